@@ -3,6 +3,7 @@
 
 #include <petzval/render/camera/scene_camera.h>
 #include <petzval/render/gltf/gltf_scene.h>
+#include <petzval/render/materials/measured_brdf.h>
 #include <petzval/render/path_tracer.h>
 
 #include <cmath>
@@ -63,6 +64,22 @@ bool try_ply(std::string_view bytes) {
         require(static_cast<std::size_t>(corner) < mesh.positions.size(), "a corner that is not there");
     for (const auto& position : mesh.positions)
       for (const float each : position) require(std::isfinite(each), "a vertex that is no place");
+  });
+}
+
+bool try_measured_brdf(std::string_view bytes) {
+  using namespace render;
+  return accepted([&] {
+    const MeasuredBrdf brdf(bytes, "fuzz", WavelengthGroups({550, 600}));
+    for (const double slope : {-2.0, 0.0, 0.4})
+      for (const double share : {0.0, 0.3, 1 - 0x1p-32}) {
+        const Vector3 wo = normalised(Vector3{slope, 0.1 * slope, slope < 0 ? -1.0 : 1.0});
+        const auto chosen = brdf.sample(wo, share, 0.7, 0);
+        if (!chosen) continue;
+        require(chosen->pdf > 0 && std::isfinite(chosen->pdf), "a density that is none");
+        const float most = std::max(chosen->weight.largest(), brdf.value(wo, chosen->wi, 0).largest());
+        require(most >= 0 && !std::isnan(brdf.pdf(wo, chosen->wi)), "light that is negative or no number");
+      }
   });
 }
 

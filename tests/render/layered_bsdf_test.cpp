@@ -216,5 +216,31 @@ TEST(LayeredBsdf, RefusesWhatIsNoCoat) {
   EXPECT_NE(message("\"spectrum conductor.k\" \"metal-Au-k\"").find("needs"), std::string::npos);
 }
 
+/// Each square of a chequered coat is that of a coat of its thickness, to the bit.
+TEST(LayeredBsdf, MayBeThickerHereThanThere) {
+  const auto seen = [](const std::string& material, const std::string& thickness, double x) {
+    const auto world = world_of(
+        white_furnace +
+        ("Texture \"t\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 1 \"float tex1\" "
+         "0.3 \"float tex2\" 0.8\nMaterial \"" +
+         material + "\" " + thickness +
+         "\nShape \"bilinearmesh\" \"point3 P\" [ -1 -1 0 1 -1 0 -1 1 0 1 1 0 ]\n"));
+    double sum = 0;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      SobolSample sample(1, i);
+      sum +=
+          static_cast<double>(PathTracer(*world, {}).trace({x, 0.1, 3}, {0, 0, -1}, 0, 0, sample).shared[0]);
+    }
+    return sum;
+  };
+  for (const char* material : {"coateddiffuse", "coatedconductor"}) {
+    const double thin = seen(material, "\"float thickness\" 0.3", -0.5),
+                 thick = seen(material, "\"float thickness\" 0.8", 0.5);
+    EXPECT_GT(thin, 1.05 * thick);
+    EXPECT_EQ(seen(material, "\"texture thickness\" \"t\"", -0.5), thin);
+    EXPECT_EQ(seen(material, "\"texture thickness\" \"t\"", 0.5), thick);
+  }
+}
+
 }  // namespace
 }  // namespace petzval::render

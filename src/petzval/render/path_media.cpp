@@ -94,7 +94,8 @@ FirstSurface PathTracer::first_beyond(const Path& path, double limit, int group,
     const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
     const Material& material = material_met(geometry, texture_point, group, sample);
     if (material.kind != Material::Kind::none) {
-      if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
+      if (material.normal_map || material.bump_map)
+        point.shading_normal = tilted_normal(material, geometry, *hit, point);
       return {true, point.position, facing(point.shading_normal, -path.direction),
               material.bsdf(texture_point, group, path.hero).albedo()};
     }

@@ -181,6 +181,12 @@ const Material& PathTracer::material_met(const Geometry& geometry, const Texture
   return material_at(world_.materials, geometry.material, point, group, sample.next1());
 }
 
+Vector3 PathTracer::tilted_normal(const Material& material, const Geometry& geometry, const Hit& hit,
+                                  const SurfacePoint& point) const {
+  if (material.normal_map) return material.normal_map->normal_at(point);
+  return material.bump_map->normal_at(point, along_v(geometry, hit, point, world_.place_of(hit)));
+}
+
 PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
                             double limit, FirstSurface* first, std::span<SourceLight> of_sources,
                             const Lanes& led_by) const {
@@ -238,7 +244,8 @@ PathLight PathTracer::follow(Path& path, int group, SobolSample& sample, double 
       if (media) path.medium = medium_towards(geometry, point, path.direction, path.medium);
       continue;
     }
-    if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
+    if (material.normal_map || material.bump_map)
+      point.shading_normal = tilted_normal(material, geometry, *hit, point);
     const Bsdf bsdf = material.bsdf(texture_point, group, path.hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};

@@ -67,6 +67,8 @@ class PathTracer {
   PathLight follow(Path& path, int group, SobolSample& sample, double limit, FirstSurface* first) const;
   const Material& material_met(const Geometry& geometry, const TexturePoint& point, int group,
                                SobolSample& sample) const;
+  Vector3 tilted_normal(const Material& material, const Geometry& geometry, const Hit& hit,
+                        const SurfacePoint& point) const;
   void add(Path& path, const Lanes& light, int source) const;
   void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;

@@ -4,6 +4,7 @@
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
 #include <petzval/render/materials/fresnel.h>
+#include <petzval/render/materials/measured_brdf.h>
 
 #include <algorithm>
 
@@ -56,6 +57,13 @@ Bsdf Bsdf::thin_dielectric(const Lanes& eta) {
   return bsdf;
 }
 
+Bsdf Bsdf::measured(const MeasuredBrdf& measured, int group) {
+  Bsdf bsdf(Kind::measured, {0, 0});
+  bsdf.measured_ = &measured;
+  bsdf.group_ = group;
+  return bsdf;
+}
+
 bool Bsdf::transmits() const {
   return kind_ == Kind::dielectric || kind_ == Kind::thin || (kind_ == Kind::diffuse && !second_.is_black());
 }
@@ -77,6 +85,8 @@ Lanes Bsdf::bare_value(Vector3 wo, Vector3 wi) const {
       return dielectric_value(wo, wi);
     case Kind::layered:
       return layered_value(wo, wi);
+    case Kind::measured:
+      return measured_->value(wo, wi, group_);
     case Kind::thin:
       break;
   }
@@ -107,6 +117,8 @@ double Bsdf::bare_pdf(Vector3 wo, Vector3 wi) const {
       return dielectric_pdf(wo, wi);
     case Kind::layered:
       return same_side ? layered_pdf(wo, wi) : 0;
+    case Kind::measured:
+      return measured_->pdf(wo, wi);
     case Kind::thin:
       break;
   }
@@ -126,6 +138,8 @@ std::optional<BsdfSample> Bsdf::bare_sample(Vector3 wo, double choice, double u,
       return sample_dielectric(wo, choice, u, v);
     case Kind::layered:
       return sample_layered(wo, choice, u, v);
+    case Kind::measured:
+      return measured_->sample(wo, u, v, group_);
     case Kind::thin:
       break;
   }
@@ -136,6 +150,7 @@ Lanes Bsdf::bare_albedo() const {
   if (kind_ == Kind::diffuse || kind_ == Kind::coated) return first_;
   if (kind_ == Kind::conductor) return conductor_at(1);
   if (kind_ == Kind::layered) return layering_->metal ? layered_mirror(1) : first_;
+  if (kind_ == Kind::measured) return measured_->albedo(group_);
   return Lanes::all(1);
 }
 

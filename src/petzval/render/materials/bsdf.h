@@ -22,6 +22,7 @@ struct BsdfSample {
 
 /// What a coating reflects as a whole from one direction; see coating_albedo.h.
 class CoatingAlbedo;
+class MeasuredBrdf;
 class Sheen;
 
 /// How a clear dielectric lies over an opaque base.
@@ -48,11 +49,14 @@ class Bsdf {
   /// (Guo, Hasan and Zhao 2018). value() is a draw whose mean is f, the same for the same directions; pdf()
   /// is near the density of sample(), near enough to weigh two ways of sampling.
   /// \param first  of the base: its reflectance, or eta in air. \param second  k in air, of a metal.
+  /// \param thickness  here, if not that of `layering`.
   static Bsdf layered(const Lanes& first, const Lanes& second, Microfacets coat, Microfacets base,
-                      const Layering& layering);
+                      const Layering& layering, std::optional<double> thickness = {});
   /// `eta`: inside / outside for each lane; `hero`: the lane that decides where the light goes.
   static Bsdf dielectric(const Lanes& eta, int hero, Microfacets facets);
   static Bsdf thin_dielectric(const Lanes& eta);
+  /// `measured` must outlive it.
+  static Bsdf measured(const MeasuredBrdf& measured, int group);
 
   /// Fibres over what is there, which must be opaque and not layered: of what they leave of the light both
   /// ways the lesser share lights it (KHR_materials_sheen).
@@ -75,7 +79,7 @@ class Bsdf {
   Lanes albedo() const;
 
  private:
-  enum class Kind { diffuse, coated, conductor, dielectric, thin, layered };
+  enum class Kind { diffuse, coated, conductor, dielectric, thin, layered, measured };
   class LayerWalk;
   Bsdf(Kind kind, Microfacets facets) : kind_(kind), facets_(facets) {}
 
@@ -109,7 +113,10 @@ class Bsdf {
   bool mirror_ = false, disperses_ = false;
   const CoatingAlbedo* coating_ = nullptr;
   const Layering* layering_ = nullptr;
+  double thickness_ = 0;           ///< of the coat
   Microfacets base_facets_{0, 0};  ///< below the coat
+  const MeasuredBrdf* measured_ = nullptr;
+  int group_ = 0;  ///< of wavelengths, of what is measured
   const Sheen* sheen_ = nullptr;
   Lanes sheen_colour_ = Lanes::all(0);
   double sheen_alpha_ = 1;

@@ -45,6 +45,7 @@ class Bsdf::LayerWalk {
  public:
   explicit LayerWalk(const Bsdf& whole)
       : layering_(*whole.layering_),
+        thickness_(whole.thickness_),
         facets_(whole.facets_),
         coat_(Bsdf::dielectric(Lanes::all(layering_.eta), 0, facets_)),
         base_(layering_.metal ? Bsdf::conductor(1 / layering_.eta * whole.first_,
@@ -56,9 +57,7 @@ class Bsdf::LayerWalk {
   int turns() const {
     return layering_.max_depth > 0 ? std::min(most_turns, (layering_.max_depth + 1) / 2) : most_turns;
   }
-  double absorbed(double cos) const {
-    return layering_.thickness > 0 ? std::exp(-layering_.thickness / std::abs(cos)) : 1;
-  }
+  double absorbed(double cos) const { return thickness_ > 0 ? std::exp(-thickness_ / std::abs(cos)) : 1; }
 
   struct Crossing {
     Vector3 wi;
@@ -88,13 +87,15 @@ class Bsdf::LayerWalk {
 
  private:
   const Layering& layering_;
+  double thickness_;
   const Microfacets& facets_;
   Bsdf coat_, base_;
 };
 
 Bsdf Bsdf::layered(const Lanes& first, const Lanes& second, Microfacets coat, Microfacets base,
-                   const Layering& layering) {
+                   const Layering& layering, std::optional<double> thickness) {
   Bsdf bsdf(Kind::layered, coat);
+  bsdf.thickness_ = thickness.value_or(layering.thickness);
   bsdf.first_ = first;
   bsdf.second_ = second;
   bsdf.eta_ = layering.eta;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/render/materials/material.h>
 
 #include <algorithm>
@@ -76,18 +77,30 @@ void read_diffuse_transmission(const Parameters& parameters, const TextureLibrar
   material.transmittance_scale = parameters.number("scale", 1);
 }
 
-/// By index: what materials share.
-using Coatings = std::map<double, std::shared_ptr<const CoatingAlbedo>>;
+/// What materials share.
+struct SharedParts {
+  std::map<double, std::shared_ptr<const CoatingAlbedo>> coatings;      ///< by index
+  std::map<std::string, std::shared_ptr<const MeasuredBrdf>> measured;  ///< by path
+  std::shared_ptr<const Sheen> sheen;
+};
 
 /// What a clear coat is: pbrt-v4's parameters of coateddiffuse and coatedconductor.
-const Layering& read_layering(const Parameters& parameters, Unsupported& unsupported, const char* eta,
-                              Material& material) {
+const Layering& read_layering(const Parameters& parameters, const TextureLibrary& textures,
+                              Unsupported& unsupported, const char* eta, Material& material) {
   Layering& layering = material.layering;
-  layering.eta = parameters.number(eta, 1.5);
+  const auto even = [&](const char* name, double otherwise) {
+    const Parameter* texture = parameters.find(name, {"texture"});
+    if (texture) unsupported.report(texture->at, fmt::format("a texture of \"{}\"", name));
+    return texture ? otherwise : parameters.number(name, otherwise);
+  };
+  layering.eta = even(eta, 1.5);
   if (!(layering.eta > 1 && layering.eta < 4))
     throw scene_error(parameters.location_of(eta),
                       fmt::format("a coating of index {}; above 1 and below 4 would be right", layering.eta));
-  layering.thickness = parameters.number("thickness", 0);
+  if (parameters.find("thickness", {"texture"}))
+    material.coat_thickness = textures.float_parameter(parameters, "thickness");
+  else
+    layering.thickness = parameters.number("thickness", 0);
   if (!(layering.thickness >= 0))
     throw scene_error(parameters.location_of("thickness"), "0 or more would be right");
   const auto count = [&](const char* name, int otherwise) {
@@ -100,22 +113,23 @@ const Layering& read_layering(const Parameters& parameters, Unsupported& unsuppo
   layering.walks = count("nsamples", 1);
   parameters.find("g");  // of a medium, which there is none of
   if (const Parameter* albedo = parameters.find("albedo"))
-    if (std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
+    if (albedo->type == "texture" ||
+        std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
       unsupported.report(albedo->at, "a medium inside a coating");
   return layering;
 }
 
 void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures,
-                         Unsupported& unsupported, Coatings& coatings, Material& material) {
+                         Unsupported& unsupported, SharedParts& shared, Material& material) {
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
   read_roughness(parameters, textures, material);
-  const double eta = read_layering(parameters, unsupported, "eta", material).eta;
+  const double eta = read_layering(parameters, textures, unsupported, "eta", material).eta;
   material.reflectance_through_coating = parameters.boolean("throughcoating", false);
   // The closed form has all orders of reflection and nothing that is absorbed.
-  if (material.layering.thickness > 0 || material.layering.max_depth > 0)
+  if (material.layering.thickness > 0 || material.coat_thickness || material.layering.max_depth > 0)
     material.kind = Material::Kind::layered;
-  std::shared_ptr<const CoatingAlbedo>& coating = coatings[eta];
+  std::shared_ptr<const CoatingAlbedo>& coating = shared.coatings[eta];
   if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
   material.coating = coating;
 }
@@ -148,7 +162,7 @@ void read_conductor(const Parameters& parameters, const TextureLibrary& textures
 void read_coated_conductor(const Parameters& parameters, const TextureLibrary& textures,
                            Unsupported& unsupported, Material& material, const Location& at) {
   material.kind = Material::Kind::layered;
-  read_layering(parameters, unsupported, "interface.eta", material);
+  read_layering(parameters, textures, unsupported, "interface.eta", material);
   material.layering.metal = true;
   const auto [u, v] = read_roughness(parameters, textures, "interface.");
   material.roughness_u = u, material.roughness_v = v;
@@ -169,9 +183,26 @@ void read_subsurface(const Parameters& parameters, const TextureLibrary& texture
       unsupported.report(parameter->at, "a subsurface material that varies over its surface");
 }
 
+void read_measured(const Parameters& parameters, const TextureLibrary& textures, SharedParts& shared,
+                   Material& material) {
+  material.kind = Material::Kind::measured;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a measured material needs \"string filename\", a .bsdf file");
+  const Location& at = parameters.location_of("filename");
+  const std::string path = resolved_path(at, name);
+  std::shared_ptr<const MeasuredBrdf>& measured = shared.measured[path];
+  if (!measured) try {
+      measured = std::make_shared<const MeasuredBrdf>(read_whole_file(path), name, textures.groups());
+    } catch (const InputError& error) {
+      throw scene_error(at, error.what());
+    }
+  material.measured = measured;
+}
+
 /// Petzval's own, for KHR_materials_sheen of glTF.
 void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
-                std::shared_ptr<const Sheen>& sheen, Material& material) {
+                SharedParts& shared, Material& material) {
   using enum Material::Kind;
   const Parameter* colour = parameters.find("sheencolor");
   if (!colour) return;
@@ -179,8 +210,20 @@ void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Un
     return unsupported.report(colour->at, "sheen on a material of this kind");
   material.sheen_colour = textures.spectrum_parameter(parameters, "sheencolor", SpectrumRole::albedo, 0);
   material.sheen_roughness = textures.float_parameter(parameters, "sheenroughness", 0);
-  if (!sheen) sheen = std::make_shared<const Sheen>();
-  material.sheen = sheen;
+  if (!shared.sheen) shared.sheen = std::make_shared<const Sheen>();
+  material.sheen = shared.sheen;
+}
+
+/// What tilts its shading normal.
+void read_tilt(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
+  material.normal_map = textures.normal_map(parameters);
+  if (material.kind == Material::Kind::mix || material.kind == Material::Kind::none) return;
+  const FloatTexture height = textures.float_parameter(parameters, "displacement");
+  if (!height || height->is_constant()) return;
+  if (material.normal_map)
+    throw scene_error(parameters.location_of("displacement"),
+                      "a material with both a normal map and a displacement; one of them would be right");
+  material.bump_map = std::make_shared<const BumpMap>(height);
 }
 
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
@@ -220,7 +263,7 @@ Lanes base_at(const Material& material, const Microfacets& coat, const TexturePo
 }
 
 Material make_material(const SceneDescription& scene, const Entity& entity, const TextureLibrary& textures,
-                       Unsupported& unsupported, Coatings& coatings, std::shared_ptr<const Sheen>& sheen) {
+                       Unsupported& unsupported, SharedParts& shared) {
   const Parameters& parameters = entity.parameters;
   Material material;
   if (entity.type == "diffuse") {
@@ -228,7 +271,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
   } else if (entity.type == "diffusetransmission") {
     read_diffuse_transmission(parameters, textures, material);
   } else if (entity.type == "coateddiffuse") {
-    read_coated_diffuse(parameters, textures, unsupported, coatings, material);
+    read_coated_diffuse(parameters, textures, unsupported, shared, material);
   } else if (entity.type == "coatedconductor") {
     read_coated_conductor(parameters, textures, unsupported, material, entity.location());
   } else if (entity.type == "conductor") {
@@ -239,6 +282,8 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     read_roughness(parameters, textures, material);
   } else if (entity.type == "subsurface") {
     read_subsurface(parameters, textures, unsupported, material);
+  } else if (entity.type == "measured") {
+    read_measured(parameters, textures, shared, material);
   } else if (entity.type == "thindielectric") {
     material.kind = Material::Kind::thin_dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
@@ -253,8 +298,8 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     return material;
   }
   parameters.find("type");
-  read_sheen(parameters, textures, unsupported, sheen, material);
-  material.normal_map = textures.normal_map(parameters);
+  read_sheen(parameters, textures, unsupported, shared, material);
+  read_tilt(parameters, textures, material);
   unsupported.report_unused(parameters, fmt::format("material \"{}\"", entity.type));
   return material;
 }
@@ -296,13 +341,16 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
     }
     case Kind::layered: {
       const Microfacets coat = facets_at(*this, point, group);
+      std::optional<double> thickness;
+      if (coat_thickness) thickness = std::max(0.0, coat_thickness->at(point, group));
       if (layering.metal) {
         const auto [n, absorption] = metal_at(*this, point, group);
         return Bsdf::layered(n, absorption, coat,
                              facets_at(base_roughness_u, base_roughness_v, remap_roughness, point, group),
-                             layering);
+                             layering, thickness);
       }
-      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering);
+      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering,
+                           thickness);
     }
     case Kind::conductor: {
       const auto [n, absorption] = metal_at(*this, point, group);
@@ -312,6 +360,8 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
       return Bsdf::dielectric(eta->at(point, group), hero, facets_at(*this, point, group));
     case Kind::thin_dielectric:
       return Bsdf::thin_dielectric(eta->at(point, group));
+    case Kind::measured:
+      return Bsdf::measured(*measured, group);
     case Kind::diffuse:
     case Kind::none:
     case Kind::mix:
@@ -324,10 +374,9 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
                                      Unsupported& unsupported) {
   std::vector<Material> materials;
   materials.reserve(scene.materials.size());
-  Coatings coatings;
-  std::shared_ptr<const Sheen> sheen;
+  SharedParts shared;
   for (const Entity& entity : scene.materials)
-    materials.push_back(make_material(scene, entity, textures, unsupported, coatings, sheen));
+    materials.push_back(make_material(scene, entity, textures, unsupported, shared));
   check_mixtures(materials, scene);
   return materials;
 }
@@ -339,9 +388,9 @@ bool varies(const std::vector<Material>& materials, int index) {
     if (*each && !(*each)->is_constant()) return true;
   for (const FloatTexture* each :
        {&material.roughness_u, &material.roughness_v, &material.base_roughness_u, &material.base_roughness_v,
-        &material.mix_amount, &material.sheen_roughness})
+        &material.mix_amount, &material.sheen_roughness, &material.coat_thickness})
     if (*each && !(*each)->is_constant()) return true;
-  if (material.normal_map) return true;
+  if (material.normal_map || material.bump_map) return true;
   return material.kind == Material::Kind::mix &&
          (varies(materials, material.mixed[0]) || varies(materials, material.mixed[1]));
 }

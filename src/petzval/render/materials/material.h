@@ -4,7 +4,9 @@
 
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
+#include <petzval/render/materials/measured_brdf.h>
 #include <petzval/render/materials/sheen.h>
+#include <petzval/render/textures/bump_map.h>
 #include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
 
@@ -24,6 +26,7 @@ struct Material {
     conductor,
     dielectric,
     thin_dielectric,
+    measured,
     none,
     mix
   };
@@ -35,10 +38,13 @@ struct Material {
   FloatTexture base_roughness_u, base_roughness_v;  ///< of a metal under a coat
   bool remap_roughness = true;                      ///< alpha = √roughness
   Layering layering;
+  FloatTexture coat_thickness;  ///< null: that of `layering`
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
+  std::shared_ptr<const MeasuredBrdf> measured;
   std::shared_ptr<const NormalMap> normal_map;  ///< null: none
+  std::shared_ptr<const BumpMap> bump_map;      ///< null: none; at most one of the two
   std::shared_ptr<const Sheen> sheen;           ///< null: none
   SpectrumTexture sheen_colour;
   FloatTexture sheen_roughness;

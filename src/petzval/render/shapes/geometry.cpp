@@ -107,6 +107,33 @@ SurfacePoint curve_point(const Geometry& geometry, const CurveSegments& curve, c
 
 }  // namespace
 
+Vector3 along_v(const Geometry& geometry, const Hit& hit, const SurfacePoint& point, const Transform* place) {
+  const auto primitive = static_cast<std::size_t>(hit.primitive);
+  if (const auto* curve = std::get_if<CurveSegments>(&geometry.shape))
+    return 2 * curve->at(primitive, hit.b1).radius * normalised(cross(point.along_u, point.normal));
+  const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape);
+  if (!mesh) {
+    const auto& quadric = std::get<Quadric>(geometry.shape);
+    return place ? place->direction(quadric.along_v(place->inverse_point(point.position)))
+                 : quadric.along_v(point.position);
+  }
+  // What ∂p/∂u leaves of the edge along which v changes most.
+  const auto& index = mesh->triangles[primitive];
+  const std::array<Vector3, 3> p = mesh->corners(primitive);
+  const std::array<double, 2> from = uv_of(*mesh, index[0], 0);
+  Vector3 along;
+  double most = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    const std::array<double, 2> to = uv_of(*mesh, index[i], i);
+    const double dv = to[1] - from[1];
+    if (std::abs(dv) <= most) continue;
+    most = std::abs(dv);
+    const Vector3 edge = place ? place->direction(p[i] - p[0]) : p[i] - p[0];
+    along = 1 / dv * (edge - (to[0] - from[0]) * point.along_u);
+  }
+  return along;
+}
+
 double opacity_at(const Geometry& geometry, std::size_t triangle, double b1, double b2) {
   const auto& mesh = std::get<TriangleMesh>(geometry.shape);
   const auto& index = mesh.triangles[triangle];

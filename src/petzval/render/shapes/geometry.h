@@ -65,6 +65,9 @@ struct SurfacePoint {
 SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 origin, Vector3 direction,
                            const Transform* place);
 
+/// ∂p/∂v there, as SurfacePoint::along_u is ∂p/∂u. \param point  of surface_point().
+Vector3 along_v(const Geometry& geometry, const Hit& hit, const SurfacePoint& point, const Transform* place);
+
 /// 0 to 1, at a place on a triangle of a mesh with opacity.
 double opacity_at(const Geometry& geometry, std::size_t triangle, double b1, double b2);
 

@@ -136,6 +136,18 @@ void Quadric::set_coordinates(Vector3 p, Point& point) const {
   }
 }
 
+Vector3 Quadric::along_v(Vector3 world_position) const {
+  const Vector3 p = world_from_object.inverse_point(world_position);
+  const double from_axis = std::hypot(p.x, p.y);
+  if (kind == Kind::cylinder) return world_from_object.direction({0, 0, z_max - z_min});
+  if (!(from_axis > 0)) return {};
+  const double cos = p.x / from_axis, sin = p.y / from_axis;
+  if (kind == Kind::disk) return world_from_object.direction((inner_radius - radius) * Vector3{cos, sin, 0});
+  const auto polar = [&](double z) { return std::acos(std::clamp(z / radius, -1.0, 1.0)); };
+  return world_from_object.direction((polar(z_max) - polar(z_min)) *
+                                     Vector3{cos * p.z, sin * p.z, -from_axis});
+}
+
 std::array<Vector3, 2> Quadric::bounds() const {
   const double top = kind == Kind::disk ? z_min : z_max, infinity = std::numeric_limits<double>::infinity();
   Vector3 least{infinity, infinity, infinity}, greatest = -least;

@@ -37,6 +37,8 @@ struct Quadric {
   /// Everything about a point of the surface, given nearly. \param coordinates  whether u and v are asked
   /// for.
   Point at(Vector3 world_position, bool coordinates = true) const;
+  /// ∂p/∂v at a point of the surface.
+  Vector3 along_v(Vector3 world_position) const;
 
   /// Corners of the box around it in world space: {least, greatest}.
   std::array<Vector3, 2> bounds() const;

@@ -97,6 +97,15 @@ double FloatPicture::at(const TexturePoint& point, int) const {
   return (rgb[0] + rgb[1] + rgb[2]) / 3;
 }
 
+double FloatPicture::fineness() const {
+  const TextureMapping& mapping = options_.mapping;
+  if (mapping.kind != TextureMapping::Kind::uv) return Texture::fineness();
+  const double columns = picture_.width() * std::hypot(mapping.scale_u, mapping.s_from_v),
+               rows = picture_.height() * std::hypot(mapping.scale_v, mapping.t_from_u);
+  // Not so fine that differences of u are lost in it, nor coarser than a tenth of the surface.
+  return std::clamp(0.5 / std::max(columns, rows), 1e-6, 0.1);
+}
+
 Lanes SpectrumPicture::at(const TexturePoint& point, int group) const {
   const std::array<double, 3> rgb = colour_at(picture_, options_, point);
   const auto& tint = point.tint;

@@ -21,6 +21,8 @@ class PictureSampler {
   PictureSampler(std::shared_ptr<const PictureFile> picture, PictureWrap wrap, bool linear)
       : picture_(std::move(picture)), wrap_(wrap), linear_(linear) {}
   int channels() const { return picture_->channels; }
+  int width() const { return picture_->width; }
+  int height() const { return picture_->height; }
   /// The first is repeated for a picture of one channel.
   std::array<double, 3> at(double s, double t) const;
 
@@ -43,6 +45,8 @@ class FloatPicture final : public Texture<double> {
   FloatPicture(PictureSampler picture, PictureTextureOptions options)
       : picture_(std::move(picture)), options_(std::move(options)) {}
   double at(const TexturePoint& point, int group) const override;
+  /// Half a pixel: slopes then change steadily between pixels.
+  double fineness() const override;
 
  private:
   PictureSampler picture_;

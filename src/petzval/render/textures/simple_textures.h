@@ -5,6 +5,7 @@
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/render/textures/texture.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace petzval::render {
@@ -14,6 +15,7 @@ class ConstantFloat final : public Texture<double> {
   explicit ConstantFloat(double value) : value_(value) {}
   double at(const TexturePoint&, int) const override { return value_; }
   bool is_constant() const override { return true; }
+  double fineness() const override { return 1; }
 
  private:
   double value_;
@@ -65,6 +67,7 @@ class ScaledTexture final : public Texture<Value> {
   Value at(const TexturePoint& point, int group) const override {
     return scale_->at(point, group) * texture_->at(point, group);
   }
+  double fineness() const override { return std::min(texture_->fineness(), scale_->fineness()); }
 
  private:
   std::shared_ptr<const Texture<Value>> texture_;
@@ -81,6 +84,9 @@ class MixedTexture final : public Texture<Value> {
   Value at(const TexturePoint& point, int group) const override {
     const double amount = amount_->at(point, group);
     return (1 - amount) * first_->at(point, group) + amount * second_->at(point, group);
+  }
+  double fineness() const override {
+    return std::min({first_->fineness(), second_->fineness(), amount_->fineness()});
   }
 
  private:

@@ -25,6 +25,8 @@ class Texture {
   virtual Value at(const TexturePoint& point, int group) const = 0;
   /// Whether it is the same everywhere.
   virtual bool is_constant() const { return false; }
+  /// A step in u and v over which its slopes are told; as in pbrt-v4 if nothing better is known.
+  virtual double fineness() const { return 5e-4; }
 };
 
 using FloatTexture = std::shared_ptr<const Texture<double>>;

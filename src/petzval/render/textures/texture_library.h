@@ -20,6 +20,9 @@ class TextureLibrary {
   /// \throws InputError with file, line and column; through `unsupported`. The references must outlive this.
   TextureLibrary(const SceneDescription& scene, const WavelengthGroups& groups, Unsupported& unsupported);
 
+  /// Those that textures are made for.
+  const WavelengthGroups& groups() const { return groups_; }
+
   /// The parameter as a texture: "texture name" refers to one, anything else is a constant. Nothing if
   /// absent.
   FloatTexture float_parameter(const Parameters& parameters, const std::string& name) const;
