@@ -203,6 +203,7 @@ PathLight PathTracer::follow(Path& path, int group, SobolSample& sample, double 
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
     if (media && path.medium >= 0) {
       const double distance = hit ? hit->distance : infinity;
+      add_glow(path, distance, group, sample);
       std::optional<Equiangular> beside;
       if (path.depth < std::min(options_.max_depth, places_beside))
         beside = add_beside(path, distance, group, sample);

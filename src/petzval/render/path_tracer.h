@@ -87,6 +87,8 @@ class PathTracer {
   /// \param beside  of add_beside().
   std::optional<double> fly(Path& path, double distance, int group, SobolSample& sample,
                             const std::optional<Equiangular>& beside) const;
+  /// Light of the medium itself from all of the ray that is to be flown along, so that nobody asks for it.
+  void add_glow(Path& path, double distance, int group, SobolSample& sample) const;
   /// Light that a homogeneous medium scatters near to a lamp, on the ray that is to be flown along. Returns
   /// how it was looked for.
   std::optional<Equiangular> add_beside(Path& path, double distance, int group, SobolSample& sample) const;

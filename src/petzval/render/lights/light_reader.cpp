@@ -43,10 +43,10 @@ struct Strength {
 };
 
 Strength read_strength(const Parameters& parameters, const char* name, const LightOptions& options,
-                       Unsupported& unsupported) {
+                       Unsupported& unsupported, const char* scale = "scale") {
   Strength strength;
   strength.place = parameters.location_of(name);
-  strength.scale = options.scale * parameters.number("scale", 1);
+  strength.scale = options.scale * parameters.number(scale, 1);
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
   strength.spectrum = given ? *given : white_light();
   const Parameter* parameter = parameters.find(name);
@@ -231,6 +231,14 @@ BandSpectrum area_radiance(const Entity& entity, double area, const WavelengthGr
   const double factor = power_factor(entity.parameters, sides * pi * area);
   unsupported.report_unused(entity.parameters, "AreaLightSource \"diffuse\"");
   return strength.at(groups, factor);
+}
+
+BandSpectrum medium_radiance(const Parameters& parameters, const WavelengthGroups& groups,
+                             const LightOptions& options, Unsupported& unsupported) {
+  const auto given = spectrum_parameter(parameters, "Le", SpectrumRole::illuminant, unsupported);
+  BandSpectrum radiance = groups.sampled([&](double nm) { return given && given->at(nm) != 0 ? 1.0 : 0.0; });
+  if (std::ranges::all_of(radiance, &Lanes::is_black)) return radiance;
+  return read_strength(parameters, "Le", options, unsupported, strength_of_medium).at(groups);
 }
 
 }  // namespace petzval::render
