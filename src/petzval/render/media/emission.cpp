@@ -39,6 +39,7 @@ Lanes Emission::at(const UnitPlace& place, int group) const {
   const double times = strength ? strength->at(place) : 1;
   if (!(times > 0)) return Lanes::all(0);
   const Lanes light = times * radiance[static_cast<std::size_t>(group)];
+  if (colours) return light * colours->at(place, group);
   return temperatures ? light * temperatures->radiance(place, group) : light;
 }
 

@@ -2,8 +2,7 @@
 // The light that a medium itself sends out: flames, plasma, glowing gas.
 #pragma once
 
-#include <petzval/render/media/grid_samples.h>
-#include <petzval/render/spectra/wavelength_groups.h>
+#include <petzval/render/media/colour_grid.h>
 
 #include <memory>
 
@@ -28,9 +27,10 @@ class Temperatures {
 struct Emission {
   BandSpectrum radiance;  ///< [group]; W·m⁻²·sr⁻¹·nm⁻¹
   std::shared_ptr<const Temperatures>
-      temperatures;                             ///< that give it a spectrum of its own; null: 1 everywhere
-  std::shared_ptr<const GridSamples> strength;  ///< that all is times; null: 1 everywhere
-  int source = -1;                              ///< the light of the scene that this is
+      temperatures;                              ///< that give it a spectrum of its own; null: 1 everywhere
+  std::shared_ptr<const ColourSamples> colours;  ///< the same
+  std::shared_ptr<const GridSamples> strength;   ///< that all is times; null: 1 everywhere
+  int source = -1;                               ///< the light of the scene that this is
 
   Lanes at(const UnitPlace& place, int group) const;
 };

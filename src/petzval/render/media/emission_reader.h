@@ -14,4 +14,8 @@ std::shared_ptr<Emission> read_emission(const Parameters& parameters, const Grid
                                         const WavelengthGroups& groups, const LightOptions& options,
                                         Unsupported& unsupported);
 
+/// The same of a "rgbgrid", which has "Le" as colours: D65 times each, as pbrt-v4 scales it.
+std::shared_ptr<Emission> read_colour_emission(const Parameters& parameters, const GridBox& box,
+                                               const WavelengthGroups& groups, const LightOptions& options);
+
 }  // namespace petzval::render

@@ -42,6 +42,19 @@ std::vector<float> read_grid_samples(const Parameters& parameters, const char* n
   return values;
 }
 
+std::vector<double> read_grid_colours(const Parameters& parameters, const char* name, const GridBox& box) {
+  std::vector<double> numbers = parameters.numbers(name, {"rgb"});
+  if (static_cast<double>(numbers.size()) != 3 * box.count())
+    throw scene_error(parameters.location_of(name),
+                      fmt::format("{} numbers of colours; 3 × nx × ny × nz = 3 x {} x {} x {} would be right",
+                                  numbers.size(), box.cells[0], box.cells[1], box.cells[2]));
+  for (const double each : numbers)
+    if (!(each >= 0 && each <= densest))
+      throw scene_error(parameters.location_of(name),
+                        fmt::format("a part of a colour of {:g}; 0 to {:g} would be right", each, densest));
+  return numbers;
+}
+
 std::shared_ptr<const DensityGrid> make_density_grid(const MediumDescription& description, const GridBox& box,
                                                      std::vector<float> values) {
   const Parameters& parameters = description.entity.parameters;

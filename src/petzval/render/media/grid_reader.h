@@ -28,6 +28,9 @@ GridBox read_grid_box(const MediumDescription& description);
 std::vector<float> read_grid_samples(const Parameters& parameters, const char* name, const GridBox& box,
                                      double least, const char* what);
 
+/// Colours "rgb", one for each cell and none negative, three numbers each. \throws InputError.
+std::vector<double> read_grid_colours(const Parameters& parameters, const char* name, const GridBox& box);
+
 /// \throws InputError for a box without volume.
 std::shared_ptr<const DensityGrid> make_density_grid(const MediumDescription& description, const GridBox& box,
                                                      std::vector<float> values);

@@ -43,7 +43,9 @@ struct Medium {
   AngleShares angle_shares{0};                 ///< of g
   bool scatters = false;                       ///< else light only becomes less
   std::shared_ptr<const DensityGrid> density;  ///< that the coefficients are times; null: 1 everywhere
-  std::shared_ptr<const Emission> emission;    ///< null: dark
+  /// In place of the coefficients, if not null; `density` is then what no wavelength's extinction exceeds.
+  std::shared_ptr<const ColourCoefficients> colours;
+  std::shared_ptr<const Emission> emission;  ///< null: dark
 
   Lanes extinction(int group) const {
     return absorption[static_cast<std::size_t>(group)] + scattering[static_cast<std::size_t>(group)];
@@ -60,6 +62,8 @@ struct Medium {
   Lanes glow(Vector3 origin, Vector3 way, double distance, int group, Lots& lots) const;
 
  private:
+  Flight fly_through_colours(Vector3 origin, Vector3 way, double distance, int group, int hero, bool stops,
+                             Lots& lots) const;
   Lanes glow_of_grid(Vector3 origin, Vector3 way, double distance, int group, Lots& lots) const;
   Passage passage_of(const DensityGrid::Walk& walk, int group, int hero) const;
 };

@@ -144,12 +144,60 @@ bool scatters(const Medium& medium) {
   return std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
 }
 
+/// pbrt-v4's "rgbgrid".
+void read_colours(const MediumDescription& description, const WavelengthGroups& groups,
+                  const LightOptions& options, int source, Medium& medium) {
+  const Parameters& parameters = description.entity.parameters;
+  if (!parameters.find("sigma_a") && !parameters.find("sigma_s"))
+    throw scene_error(parameters.location(), "a rgbgrid needs \"rgb sigma_a\" or \"rgb sigma_s\"");
+  const GridBox box = read_grid_box(description);
+  const double scale = read_scale(parameters);
+  const BandSpectrum white = groups.sampled([&](double) { return scale; });
+  const auto read = [&](const char* name) -> std::shared_ptr<const ColourSamples> {
+    if (!parameters.find(name)) return nullptr;
+    return std::make_shared<const ColourSamples>(box.cells, read_grid_colours(parameters, name, box), white,
+                                                 groups);
+  };
+  const auto colours =
+      std::make_shared<const ColourCoefficients>(ColourCoefficients{read("sigma_a"), read("sigma_s"), scale});
+  std::vector<float> bounds;
+  constexpr double roundings = 1e-5;  // of sums of floats
+  for (std::size_t cell = 0; static_cast<double>(cell) < box.count(); ++cell) {
+    const double back = colours->scattering ? colours->scattering->greatest(cell) : scale;
+    const double all = (colours->absorption ? colours->absorption->greatest(cell) : scale) + back;
+    if (!(all <= densest))
+      throw scene_error(parameters.location(),
+                        fmt::format("a coefficient of {:g}; 0 to {:g} would be right", all, densest));
+    medium.scatters = medium.scatters || back > 0;
+    bounds.push_back(static_cast<float>((1 + roundings) * all));
+  }
+  medium.colours = colours;
+  medium.density = make_density_grid(description, box, std::move(bounds));
+  medium.absorption = groups.sampled([](double) { return 1; });
+  medium.scattering = groups.sampled([](double) { return 0; });
+  const auto emission = read_colour_emission(parameters, box, groups, options);
+  if (emission) emission->source = source;
+  medium.emission = emission;
+}
+
 /// \param source  of the light that it sends out, if it does.
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
                    const LightOptions& options, int source, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
   const std::string& type = description.entity.type;
   Medium medium;
+  medium.g = read_g(parameters);
+  medium.angle_shares = AngleShares(medium.g);
+  const auto done = [&] {
+    if (medium.density) check_depth(medium, parameters.location());
+    parameters.find("type");
+    unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
+    return medium;
+  };
+  if (type == "rgbgrid") {
+    read_colours(description, groups, options, source, medium);
+    return done();
+  }
   if (type != "homogeneous" && type != "uniformgrid") {
     unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
     medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
@@ -168,21 +216,16 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
     medium.scattering =
         read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
   }
-  medium.g = read_g(parameters);
-  medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   std::optional<GridBox> box;
   if (type == "uniformgrid") {
     box = read_grid_box(description);
     medium.density = read_grid(description, *box, unsupported);
   }
-  if (medium.density) check_depth(medium, parameters.location());
   const auto emission = read_emission(parameters, box ? &*box : nullptr, groups, options, unsupported);
   if (emission) emission->source = source;
   medium.emission = emission;
-  parameters.find("type");
-  unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
-  return medium;
+  return done();
 }
 
 }  // namespace
