@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Media that shine beside pbrt-v4: the same small scenes through both programs, and the pictures side by side.
+"""Media that shine, media in colours and portals beside pbrt-v4: the same small scenes through both programs, and the pictures side by side.
 
     python3 bench/lights_beside.py build/release/bin/petzval PBRT [--spp 64] [--seeds 4] [--pictures FOLDER] [--only NAME]
 
@@ -59,6 +59,48 @@ def scenes():
     yield "glowing cloud", [grid("uniformgrid", f'{grey} {GREY("Le", 1)} {strength}'), BALL_OF_IT, FLOOR], None
     kelvin = numbers("float", "temperature", 800 + 1400 * np.maximum(0, 1 - x * x - z * z) * np.clip(1 - y, 0, 1))
     yield "fire", [grid("uniformgrid", f'{grey} {kelvin} {strength}'), BALL_OF_IT, FLOOR], None
+    rgb = lambda name, r, g, b: numbers("rgb", name, np.stack([lumps() * r, lumps() * g, lumps() * b], -1))
+    coloured = f'{rgb("sigma_a", 1, 0.5 + 0.5 * x, 0.4)} {rgb("sigma_s", 2 + 2 * y, 3, 1)} "float g" 0.3'
+    lamp = f'LightSource "point" "point3 from" [ 2 2.5 -2 ] {GREY("I", 4)}'
+    yield "cloud in colours", [grid("rgbgrid", coloured), lamp, BALL_OF_IT, FLOOR], None
+    sent = numbers("rgb", "Le", np.stack([1 + 0 * x, 0.5 + 0.5 * y, 0.2 + 0 * x], -1))
+    yield "glowing, in colours", [grid("rgbgrid", f'{coloured} {sent} "float Lescale" 0.02'), BALL_OF_IT, FLOOR], None
+
+    yield "sky through a portal", [f'LightSource "infinite" "string filename" "sky.hdr" {PORTAL}', *room()], "1.7 1.5 -1.7  -1 0.6 0.8"
+    yield "the same, no portal", ['LightSource "infinite" "string filename" "sky.hdr"', *room()], "1.7 1.5 -1.7  -1 0.6 0.8"
+
+
+PORTAL = '"point3 portal" [ 2 1 -1  2 1 1  2 2 1  2 2 -1 ]'
+
+
+def room():
+    """4 wide and deep, 3 high, with a window in its wall at x = 2."""
+    def quad(p, a, b):
+        p, a, b = map(np.array, (p, a, b))
+        corners = " ".join(f"{v:g}" for v in np.concatenate([p, p + a, p + a + b, p + b]))
+        return f'Shape "trianglemesh" "point3 P" [ {corners} ] "integer indices" [ 0 1 2 0 2 3 ]'
+    x, y, z = (4, 0, 0), (0, 3, 0), (0, 0, 4)
+    return [f'Material "diffuse" {GREY("reflectance", 0.6)}', quad((-2, 0, -2), x, z), quad((-2, 3, -2), x, z), quad((-2, 0, -2), y, z),
+            quad((-2, 0, -2), x, y), quad((-2, 0, 2), x, y), quad((2, 0, -2), (0, 1, 0), z), quad((2, 2, -2), (0, 1, 0), z),
+            quad((2, 1, -2), (0, 1, 0), (0, 0, 1)), quad((2, 1, 1), (0, 1, 0), (0, 0, 1)),
+            'Translate 0.5 0.4 0.5\nShape "sphere" "float radius" 0.4']
+
+
+def write_sky(folder):
+    """A square picture of a sky with a wide bright spot that the window shows, as pbrt-v4 lays out all directions."""
+    side = 256
+    v, u = (np.mgrid[0:side, 0:side] + 0.5) / side * 2 - 1
+    from_edge = 1 - (abs(u) + abs(v))
+    r = 1 - abs(from_edge)
+    phi = (np.where(r == 0, 1, (abs(v) - abs(u)) / np.where(r == 0, 1, r)) + 1) * np.pi / 4
+    rho = r * np.sqrt(2 - r * r)
+    to = np.stack([np.copysign(np.cos(phi), u) * rho, np.copysign(np.sin(phi), v) * rho, np.copysign(1 - r * r, from_edge)])
+    spot = np.array([1, 0.35, 0.1]) / np.linalg.norm([1, 0.35, 0.1])
+    light = 0.5 + 30 * np.exp(-(1 - np.tensordot(spot, to, 1)) / 0.02)
+    mantissa, exponent = np.frexp(light)
+    byte = np.clip(np.round(mantissa * 256), 0, 255)
+    pixels = np.stack([byte, byte, byte, exponent + 128], -1).astype(np.uint8)
+    (folder / "sky.hdr").write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {side} +X {side}\n".encode() + pixels.tobytes())
 
 
 def text_of(things, eye, seed=None):
@@ -100,6 +142,7 @@ def main():
             continue
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
+            write_sky(folder)
             pictures = [np.array([render(program.resolve(), things, eye, options.spp, seed, folder) for seed in range(1, options.seeds + 1)])
                         for render, program in ((ours, options.program), (theirs, options.pbrt))]
         ratios = pictures[0].mean((1, 2)) / pictures[1].mean((1, 2))

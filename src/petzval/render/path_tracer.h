@@ -68,7 +68,7 @@ class PathTracer {
   const Material& material_met(const Geometry& geometry, const TexturePoint& point, int group,
                                SobolSample& sample) const;
   void add(Path& path, const Lanes& light, int source) const;
-  void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
+  void tell_skies(Path& path, const Lanes& weight, Vector3 from, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
   template <bool media>
