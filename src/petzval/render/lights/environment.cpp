@@ -189,7 +189,7 @@ Environment::Environment(const std::shared_ptr<const PictureFile>& picture, Band
       Sky{picture, SquareDistribution(weights, picture->width, picture->height), std::move(pixels), groups});
 }
 
-Lanes Environment::radiance(Vector3 direction, int group) const {
+Lanes Environment::radiance(const Vector3& direction, int group) const {
   const Lanes& white = radiance_[static_cast<std::size_t>(group)];
   if (!sky_) return white;
   double u, v;

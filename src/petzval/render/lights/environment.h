@@ -48,7 +48,7 @@ class Environment {
   void put_behind(Portal portal);
 
   /// At a place, from a unit direction (world space, towards the light).
-  Lanes radiance(Vector3 from, Vector3 direction, int group) const {
+  Lanes radiance(const Vector3& from, const Vector3& direction, int group) const {
     if (portal_ && !portal_->lets_out(from, direction)) return Lanes::all(0);
     return radiance(direction, group);
   }
@@ -65,7 +65,7 @@ class Environment {
   double importance(const LightReceiver& to) const;
 
  private:
-  Lanes radiance(Vector3 direction, int group) const;
+  Lanes radiance(const Vector3& direction, int group) const;
   /// A mean over wavelengths.
   double luminance(Vector3 direction) const;
   /// Nearly what a plane gets of it in the open, of all wavelengths, from its spherical harmonics of order 2

@@ -261,7 +261,7 @@ double Lights::area_pdf(const std::vector<Geometry>& geometries, std::size_t are
          dot(away, away) / cos;
 }
 
-Lanes Lights::sky(Vector3 from, Vector3 direction, int group) const {
+Lanes Lights::sky(const Vector3& from, const Vector3& direction, int group) const {
   Lanes sum = Lanes::all(0);
   for (const Environment& environment : environments) sum += environment.radiance(from, direction, group);
   return sum;

@@ -85,7 +85,7 @@ class Lights {
   double area_pdf(const std::vector<Geometry>& geometries, std::size_t area, const LightPlan& plan,
                   const SurfacePoint& point) const;
   /// From the skies. \param from  the place, \param direction  unit, towards them.
-  Lanes sky(Vector3 from, Vector3 direction, int group) const;
+  Lanes sky(const Vector3& from, const Vector3& direction, int group) const;
   double sky_pdf(const LightPlan& plan, Vector3 direction) const;
 
  private:
