@@ -190,7 +190,7 @@ PathLight through_pane(json volume, double thick, double ior = 1) {
   const auto world = build_world(scene, WavelengthGroups({450, 550, 650}), {}, unsupported);
   SobolSample sample(1, 0);
   PathLight light = PathTracer(*world, {}).trace({0.1, 0.2, 5}, {0, 0, -1}, 0, 0, sample);
-  const Lanes sky = world->lights.sky({0, 0, -1}, 0);
+  const Lanes sky = world->lights.sky({}, {0, 0, -1}, 0);
   for (int lane = 0; lane < lane_count; ++lane) light.shared[lane] /= sky[lane];
   return light;
 }

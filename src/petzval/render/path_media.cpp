@@ -21,6 +21,15 @@ std::optional<double> PathTracer::fly(Path& path, double distance, int group, So
   return flight.scattered_at;
 }
 
+void PathTracer::add_glow(Path& path, double distance, int group, SobolSample& sample) const {
+  const Medium& medium = world_.media[static_cast<std::size_t>(path.medium)];
+  if (!medium.emission) return;
+  Lots lots(medium.density ? sample.next1() : 0);
+  const Lanes light = medium.glow(path.origin, path.direction, distance, group, lots);
+  add(path, light, medium.emission->source);
+  if (path.depth == 0) path.light.straight += path.throughput * light;
+}
+
 std::optional<Equiangular> PathTracer::add_beside(Path& path, double distance, int group,
                                                   SobolSample& sample) const {
   const Medium& medium = world_.media[static_cast<std::size_t>(path.medium)];

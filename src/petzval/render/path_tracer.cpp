@@ -29,11 +29,13 @@ void PathTracer::add(Path& path, const Lanes& light, int source) const {
 }
 
 /// What each of the skies has of light from all of them, which is asked for as one.
-void PathTracer::tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const {
+void PathTracer::tell_skies(Path& path, const Lanes& weight, Vector3 from, Vector3 direction,
+                            int group) const {
   if (path.of_sources.empty()) return;
   for (std::size_t i = 0; i < world_.lights.environments.size(); ++i) {
     SourceLight& sum = path.of_sources[static_cast<std::size_t>(world_.lights.environment_sources[i])];
-    const Lanes light = path.throughput * (weight * world_.lights.environments[i].radiance(direction, group));
+    const Lanes light =
+        path.throughput * (weight * world_.lights.environments[i].radiance(from, direction, group));
     if (path.alone)
       sum.alone += light[path.hero];
     else
@@ -66,8 +68,8 @@ void PathTracer::add_sky(Path& path, int group) const {
     if (options_.lights == PathOptions::Lights::both)
       weight = balanced(path.pdf, path.asked_mean * world_.lights.sky_pdf(path.plan, path.direction));
   }
-  add(path, weight * world_.lights.sky(path.direction, group), -1);
-  tell_skies(path, weight * Lanes::all(1), path.direction, group);
+  add(path, weight * world_.lights.sky(path.origin, path.direction, group), -1);
+  tell_skies(path, weight * Lanes::all(1), path.origin, path.direction, group);
 }
 
 /// What an open way has left of a light that was asked. \param scatter_pdf  of the direction to it.
@@ -95,7 +97,8 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
                 ? 1 / again
                 : asked * light.pdf / (again * asked * light.pdf + flown * scatter_pdf());
   add(path, weight * (f * light.light), light.source);
-  if (light.source < 0) tell_skies(path, weight * (kept ? f * *kept : f), light.direction, group);
+  if (light.source < 0)
+    tell_skies(path, weight * (kept ? f * *kept : f), path.plan.to.position, light.direction, group);
 }
 
 template <bool media>
@@ -209,6 +212,7 @@ PathLight PathTracer::follow(Path& path, int group, SobolSample& sample, double 
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
     if (media && path.medium >= 0) {
       const double distance = hit ? hit->distance : infinity;
+      add_glow(path, distance, group, sample);
       std::optional<Equiangular> beside;
       if (path.depth < std::min(options_.max_depth, places_beside))
         beside = add_beside(path, distance, group, sample);

@@ -70,7 +70,7 @@ class PathTracer {
   Vector3 tilted_normal(const Material& material, const Geometry& geometry, const Hit& hit,
                         const SurfacePoint& point) const;
   void add(Path& path, const Lanes& light, int source) const;
-  void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
+  void tell_skies(Path& path, const Lanes& weight, Vector3 from, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
   template <bool media>
@@ -89,6 +89,8 @@ class PathTracer {
   /// \param beside  of add_beside().
   std::optional<double> fly(Path& path, double distance, int group, SobolSample& sample,
                             const std::optional<Equiangular>& beside) const;
+  /// Light of the medium itself from all of the ray that is to be flown along, so that nobody asks for it.
+  void add_glow(Path& path, double distance, int group, SobolSample& sample) const;
   /// Light that a homogeneous medium scatters near to a lamp, on the ray that is to be flown along. Returns
   /// how it was looked for.
   std::optional<Equiangular> add_beside(Path& path, double distance, int group, SobolSample& sample) const;

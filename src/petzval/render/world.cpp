@@ -5,6 +5,7 @@
 #include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
 
+#include <algorithm>
 #include <map>
 
 namespace petzval::render {
@@ -111,13 +112,17 @@ class WorldBuilder {
 
 }  // namespace
 
+bool World::is_dark() const {
+  return lights.empty() && std::ranges::none_of(media, [](const Medium& each) { return !!each.emission; });
+}
+
 std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
                                          const LightOptions& options, Unsupported& unsupported) {
   auto world =
       std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, scene.camera_medium, false, {}, nullptr});
   const TextureLibrary textures(scene, world->groups, unsupported);
   world->materials = make_materials(scene, textures, unsupported);
-  world->media = make_media(scene, world->groups, unsupported);
+  world->media = make_media(scene, world->groups, options, unsupported);
   WorldBuilder builder(scene, options, textures, unsupported, *world);
   const GeometryRange standing = builder.add(scene.shapes);
   std::vector<GeometryRange> objects;

@@ -24,6 +24,7 @@ struct World {
   Lights lights;
   std::unique_ptr<Intersector> intersector;
 
+  bool is_dark() const;  ///< nothing shines
   const Transform* place_of(const Hit& hit) const {
     return hit.instance < 0 ? nullptr : &placed[static_cast<std::size_t>(hit.instance)].world_from_object;
   }

@@ -69,7 +69,7 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, const
     return render_scene(focused, context, watch);
   }
   const render::World& world = *scene.world->world;
-  if (world.lights.empty()) send_note(context, "the scene has no lights; the picture will be black");
+  if (world.is_dark()) send_note(context, "the scene has no lights; the picture will be black");
   render::RenderOptions options = sampling_of(scene, context);
   const int samples = render::effective_samples(world.groups, options.samples_per_pixel);
   if (samples != options.samples_per_pixel)

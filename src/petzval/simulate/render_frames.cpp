@@ -69,7 +69,7 @@ std::vector<Rendering> render_frames(std::span<const PreparedScene> frames, cons
   require_shareable(frames);
   const PreparedScene& first = frames.front();
   const render::World& world = *first.world->world;
-  if (world.lights.empty()) send_note(context, "the scene has no lights; the pictures will be black");
+  if (world.is_dark()) send_note(context, "the scene has no lights; the pictures will be black");
   std::vector<Rendering> pictures = result_within(context, [&](const ProgressCallback& progress) {
     std::vector<render::LensCamera> cameras;
     for (const PreparedScene& frame : frames) {

@@ -5,6 +5,7 @@
 #include <petzval/base/number_text.h>
 #include <petzval/render/lights/alter_lights.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -44,19 +45,37 @@ Parameters with(const Parameters& before, Parameter parameter) {
   return after;
 }
 
+/// As lights_of() counts them.
+std::vector<Entity*> entities_of(SceneDescription& scene) {
+  std::vector<Entity*> entities;
+  for (LightDescription& light : scene.lights) entities.push_back(&light.entity);
+  for (Entity& light : scene.area_lights) entities.push_back(&light);
+  for (MediumDescription& medium : scene.media)
+    if (shines(medium)) entities.push_back(&medium.entity);
+  return entities;
+}
+
 Parameter number(const Parameters& of, const char* type, const char* name, double value) {
   return {type, name, of.location(), {value}, {}, {}};
 }
 
 }  // namespace
 
+bool shines(const MediumDescription& medium) {
+  const std::vector<Parameter>& list = medium.entity.parameters.list();
+  return std::ranges::any_of(
+      list, [](const Parameter& each) { return each.name == "Le" || each.name == "temperature"; });
+}
+
 std::vector<std::string> lights_of(const SceneDescription& scene) {
   std::vector<std::string> lights;
-  const auto add = [&](const Entity& light, const char* what) {
-    lights.push_back(fmt::format("{} {}{}", lights.size(), what, light.type));
+  const auto add = [&](const std::string& name, const char* what) {
+    lights.push_back(fmt::format("{} {}{}", lights.size(), what, name));
   };
-  for (const LightDescription& light : scene.lights) add(light.entity, "");
-  for (const Entity& light : scene.area_lights) add(light, "area ");
+  for (const LightDescription& light : scene.lights) add(light.entity.type, "");
+  for (const Entity& light : scene.area_lights) add(light.type, "area ");
+  for (const MediumDescription& medium : scene.media)
+    if (shines(medium)) add(medium.name, "medium ");
   return lights;
 }
 
@@ -86,26 +105,27 @@ LightChange parse_light_change(std::string_view text) {
 
 void alter_lights(std::span<const LightChange> changes, SceneDescription& scene) {
   const std::size_t sources = scene.lights.size();
+  const std::vector<Entity*> lights = entities_of(scene);
   for (const LightChange& change : changes) {
-    if (change.light >= sources + scene.area_lights.size())
+    if (change.light >= lights.size())
       throw InputError(fmt::format("{}: there is no light {}; the scene has {}", change.text(), change.light,
                                    lights_text(scene)));
-    const bool is_source = change.light < sources;
-    Entity& light = is_source ? scene.lights[change.light].entity : scene.area_lights[change.light - sources];
-    Parameters& parameters = light.parameters;
+    const bool is_source = change.light < sources,
+               is_medium = change.light >= sources + scene.area_lights.size();
+    const char* const scale = is_medium ? strength_of_medium : "scale";
+    Parameters& parameters = lights[change.light]->parameters;
     switch (change.kind) {
       case LightChange::Kind::scale:
-        parameters = with(parameters,
-                          number(parameters, "float", "scale", parameters.number("scale", 1) * change.value));
+        parameters =
+            with(parameters, number(parameters, "float", scale, parameters.number(scale, 1) * change.value));
         break;
       case LightChange::Kind::kelvin:
         parameters = with(parameters, number(parameters, "blackbody", colour_of_light, change.value));
         break;
       case LightChange::Kind::turn_deg:
         if (!is_source)
-          throw InputError(
-              fmt::format("{}: is a surface that shines, which stands where it is; the scene has {}",
-                          change.text(), lights_text(scene)));
+          throw InputError(fmt::format("{}: is a {} that shines, which stands where it is; the scene has {}",
+                                       change.text(), is_medium ? "medium" : "surface", lights_text(scene)));
         Transform& place = scene.lights[change.light].world_from_light;
         place = Transform::rotation(change.value, upright(scene)) * place;
         break;

@@ -9,7 +9,7 @@
 namespace petzval::render {
 
 /// One light made stronger, turned or coloured. Lights are counted from 0: sources of light in the order of
-/// the scene's file, then surfaces that shine, one for each "AreaLightSource".
+/// the scene's file, then surfaces that shine, one for each "AreaLightSource", then media that shine.
 struct LightChange {
   enum class Kind {
     scale,     ///< so many times as strong; 0: off

@@ -43,10 +43,10 @@ struct Strength {
 };
 
 Strength read_strength(const Parameters& parameters, const char* name, const LightOptions& options,
-                       Unsupported& unsupported) {
+                       Unsupported& unsupported, const char* scale = "scale") {
   Strength strength;
   strength.place = parameters.location_of(name);
-  strength.scale = options.scale * parameters.number("scale", 1);
+  strength.scale = options.scale * parameters.number(scale, 1);
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
   strength.spectrum = given ? *given : white_light();
   const Parameter* parameter = parameters.find(name);
@@ -183,6 +183,22 @@ SmallLight read_distant(const LightDescription& description, const WavelengthGro
   return light;
 }
 
+/// Seen only through "portal", if there is one: four corners in the world, whatever the transformation.
+Environment behind_portal(Environment light, const Parameters& parameters) {
+  if (!parameters.find("portal")) return light;
+  const std::vector<double> p = parameters.numbers("portal", {"point3"});
+  if (p.size() != 12)
+    throw scene_error(parameters.location_of("portal"),
+                      fmt::format("{} numbers; four corners of three would be right", p.size()));
+  const auto corner = [&](std::size_t i) { return Vector3{p[3 * i], p[3 * i + 1], p[3 * i + 2]}; };
+  try {
+    light.put_behind(Portal({corner(0), corner(1), corner(2), corner(3)}));
+  } catch (const InputError& error) {
+    throw scene_error(parameters.location_of("portal"), error.what());
+  }
+  return light;
+}
+
 Environment read_infinite(const LightDescription& description, const WavelengthGroups& groups,
                           const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
@@ -190,12 +206,14 @@ Environment read_infinite(const LightDescription& description, const WavelengthG
   const double illuminance = parameters.number("illuminance", -1);
   const double factor = illuminance > 0 ? illuminance / pi : 1;
   const std::string name = parameters.string("filename", "");
-  if (name.empty()) return {strength.at(groups, factor), description.world_from_light};
+  if (name.empty())
+    return behind_portal({strength.at(groups, factor), description.world_from_light}, parameters);
   if (parameters.find("L"))
     throw scene_error(parameters.location_of("L"), "an infinite light has either \"L\" or a file");
   const auto picture = std::make_shared<const PictureFile>(read_light_picture(parameters, name));
   require_square(*picture, parameters, name);
-  return {picture, strength.at(groups, factor), groups, description.world_from_light};
+  return behind_portal({picture, strength.at(groups, factor), groups, description.world_from_light},
+                       parameters);
 }
 
 }  // namespace
@@ -231,6 +249,14 @@ BandSpectrum area_radiance(const Entity& entity, double area, const WavelengthGr
   const double factor = power_factor(entity.parameters, sides * pi * area);
   unsupported.report_unused(entity.parameters, "AreaLightSource \"diffuse\"");
   return strength.at(groups, factor);
+}
+
+BandSpectrum medium_radiance(const Parameters& parameters, const WavelengthGroups& groups,
+                             const LightOptions& options, Unsupported& unsupported) {
+  const auto given = spectrum_parameter(parameters, "Le", SpectrumRole::illuminant, unsupported);
+  BandSpectrum radiance = groups.sampled([&](double nm) { return given && given->at(nm) != 0 ? 1.0 : 0.0; });
+  if (std::ranges::all_of(radiance, &Lanes::is_black)) return radiance;
+  return read_strength(parameters, "Le", options, unsupported, strength_of_medium).at(groups);
 }
 
 }  // namespace petzval::render

@@ -113,15 +113,6 @@ void Lights::prepare(const std::vector<Geometry>& geometries) {
   tree_ = LightTree(bounds);
 }
 
-double Lights::weight_of(const Environment& environment, const LightReceiver& to) const {
-  double irradiance = to.all_around ? environment.fluence() : environment.irradiance(to.normal);
-  if (to.both_sides) irradiance += environment.irradiance(-to.normal);
-  // An even sky is found as well by the directions that the surface scatters to: asking for it saves little,
-  // where asking for a lamp saves much. 0.1 to 0.4 are alike in a room with a window and on open floors.
-  constexpr double of_even_sky = 0.2;
-  return irradiance * (of_even_sky + (1 - of_even_sky) * environment.unevenness());
-}
-
 namespace {
 
 double weight_of_distant(const SmallLight& light, const LightReceiver& to) {
@@ -137,7 +128,7 @@ LightPlan Lights::plan(const LightReceiver& to) const {
   plan.to = to;
   plan.nearby_sum = tree_.weigh(to, plan.nearby);
   for (const std::size_t i : distant_) plan.far_sum += weight_of_distant(smalls[i], to);
-  for (const Environment& environment : environments) plan.far_sum += weight_of(environment, to);
+  for (const Environment& environment : environments) plan.far_sum += environment.importance(to);
   return plan;
 }
 
@@ -170,13 +161,15 @@ std::optional<LightSample> Lights::sample_far(const LightPlan& plan, double choi
     return sample;
   }
   for (std::size_t i = 0; i < environments.size(); ++i) {
-    choice -= weight_of(environments[i], plan.to);
+    choice -= environments[i].importance(plan.to);
     if (choice >= 0 && i + 1 < environments.size()) continue;
     const Environment::Sample direction = environments[i].sample(plan.to, u, v);
     if (!(direction.pdf > 0)) return {};
     // All skies shine from that direction, and each might have chosen it.
-    return LightSample{
-        direction.direction, {}, sky(direction.direction, group), sky_pdf(plan, direction.direction)};
+    return LightSample{direction.direction,
+                       {},
+                       sky(plan.to.position, direction.direction, group),
+                       sky_pdf(plan, direction.direction)};
   }
   return {};
 }
@@ -268,9 +261,9 @@ double Lights::area_pdf(const std::vector<Geometry>& geometries, std::size_t are
          dot(away, away) / cos;
 }
 
-Lanes Lights::sky(Vector3 direction, int group) const {
+Lanes Lights::sky(const Vector3& from, const Vector3& direction, int group) const {
   Lanes sum = Lanes::all(0);
-  for (const Environment& environment : environments) sum += environment.radiance(direction, group);
+  for (const Environment& environment : environments) sum += environment.radiance(from, direction, group);
   return sum;
 }
 
@@ -279,7 +272,7 @@ double Lights::sky_pdf(const LightPlan& plan, Vector3 direction) const {
   if (!(all > 0)) return 0;
   double sum = 0;
   for (const Environment& environment : environments)
-    sum += weight_of(environment, plan.to) / all * environment.pdf(plan.to, direction);
+    sum += environment.importance(plan.to) / all * environment.pdf(plan.to, direction);
   return sum;
 }
 

@@ -84,7 +84,8 @@ class Lights {
   /// The density with which sample() finds a point of an area light.
   double area_pdf(const std::vector<Geometry>& geometries, std::size_t area, const LightPlan& plan,
                   const SurfacePoint& point) const;
-  Lanes sky(Vector3 direction, int group) const;
+  /// From the skies. \param from  the place, \param direction  unit, towards them.
+  Lanes sky(const Vector3& from, const Vector3& direction, int group) const;
   double sky_pdf(const LightPlan& plan, Vector3 direction) const;
 
  private:
@@ -99,7 +100,6 @@ class Lights {
                                         int group) const;
   LightBounds bounds_of(const Geometry& geometry, const AreaLight& light,
                         const std::optional<Sphere>& sphere) const;
-  double weight_of(const Environment& environment, const LightReceiver& to) const;
 
   LightTree tree_;                   ///< of areas, then of smalls that stand somewhere
   std::vector<std::size_t> stands_;  ///< into smalls

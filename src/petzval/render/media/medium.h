@@ -3,7 +3,9 @@
 #pragma once
 
 #include <petzval/render/lights/equiangular.h>
+#include <petzval/render/lights/light_options.h>
 #include <petzval/render/media/density_grid.h>
+#include <petzval/render/media/emission.h>
 #include <petzval/render/pbrt/scene_description.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 
@@ -41,6 +43,9 @@ struct Medium {
   AngleShares angle_shares{0};                 ///< of g
   bool scatters = false;                       ///< else light only becomes less
   std::shared_ptr<const DensityGrid> density;  ///< that the coefficients are times; null: 1 everywhere
+  /// In place of the coefficients, if not null; `density` is then what no wavelength's extinction exceeds.
+  std::shared_ptr<const ColourCoefficients> colours;
+  std::shared_ptr<const Emission> emission;  ///< null: dark
 
   Lanes extinction(int group) const {
     return absorption[static_cast<std::size_t>(group)] + scattering[static_cast<std::size_t>(group)];
@@ -52,8 +57,14 @@ struct Medium {
   Flight scattered_at(double distance, int group) const;
   /// What comes through from a light.
   Passage pass(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const;
+  /// The radiance that reaches the origin of what the medium itself sends out on the way: the integral in a
+  /// homogeneous medium, an estimate of it in a grid. Not of a dark one.
+  Lanes glow(Vector3 origin, Vector3 way, double distance, int group, Lots& lots) const;
 
  private:
+  Flight fly_through_colours(Vector3 origin, Vector3 way, double distance, int group, int hero, bool stops,
+                             Lots& lots) const;
+  Lanes glow_of_grid(Vector3 origin, Vector3 way, double distance, int group, Lots& lots) const;
   Passage passage_of(const DensityGrid::Walk& walk, int group, int hero) const;
 };
 
@@ -64,6 +75,6 @@ Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, U
 /// All media of a scene, in the order of its description. \throws InputError with file, line and column, and
 /// through `unsupported`.
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,
-                               Unsupported& unsupported);
+                               const LightOptions& options, Unsupported& unsupported);
 
 }  // namespace petzval::render

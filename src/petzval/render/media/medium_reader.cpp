@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/media/diffuse_albedo.h>
+#include <petzval/render/media/emission_reader.h>
 #include <petzval/render/media/medium.h>
 #include <petzval/render/media/named_media.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace petzval::render {
 
 namespace {
 
-/// Far above any medium, far below what a float holds.
-constexpr double densest = 1e12;
 /// pbrt-v4's.
 constexpr double subsurface_index = 1.33;
 
@@ -118,50 +118,16 @@ double read_g(const Parameters& parameters) {
 constexpr double most_collisions = 1e5;
 
 /// pbrt-v4's "uniformgrid".
-std::shared_ptr<const DensityGrid> read_grid(const MediumDescription& description, Unsupported& unsupported) {
+std::shared_ptr<const DensityGrid> read_grid(const MediumDescription& description, const GridBox& box,
+                                             Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
   const Parameter* given = parameters.find("density");
   if (!given) throw scene_error(parameters.location(), "a uniformgrid needs \"float density\", its samples");
-  std::array<int, 3> size;
-  double cells = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const char* name = std::array{"nx", "ny", "nz"}[axis];
-    size[axis] = parameters.integer(name, 1);
-    if (size[axis] < 1) throw scene_error(parameters.location_of(name), "1 or more would be right");
-    cells *= size[axis];
-  }
   if (given->type == "rgb") {
     unsupported.report(given->at, "a density in colours");
     return nullptr;
   }
-  const std::vector<double> numbers = parameters.numbers("density", {"float", "integer"});
-  if (static_cast<double>(numbers.size()) != cells)
-    throw scene_error(given->at,
-                      fmt::format("{} samples of the density; nx × ny × nz = {} x {} x {} would be right",
-                                  numbers.size(), size[0], size[1], size[2]));
-  std::vector<float> values;
-  values.reserve(numbers.size());
-  for (const double each : numbers) {
-    if (!(each >= 0 && each <= densest))
-      throw scene_error(given->at, fmt::format("a density of {:g}; 0 to {:g} would be right", each, densest));
-    values.push_back(static_cast<float>(each));
-  }
-  const auto corner = [&](const char* name, double otherwise) {
-    const auto p = parameters.triple(name);
-    return p ? Vector3{(*p)[0], (*p)[1], (*p)[2]} : Vector3{otherwise, otherwise, otherwise};
-  };
-  if (!description.world_from_medium.is_affine())
-    throw scene_error(parameters.location(), "a medium in a transformation that is not affine");
-  const Vector3 p0 = corner("p0", 0), p1 = corner("p1", 1);
-  const Vector3 low{std::min(p0.x, p1.x), std::min(p0.y, p1.y), std::min(p0.z, p1.z)},
-      high{std::max(p0.x, p1.x), std::max(p0.y, p1.y), std::max(p0.z, p1.z)};
-  try {
-    return std::make_shared<const DensityGrid>(size, std::move(values), low, high,
-                                               description.world_from_medium);
-  } catch (const InputError&) {
-    throw scene_error(parameters.location_of("p1"),
-                      "a box without volume; p0 and p1 are opposite corners of it");
-  }
+  return make_density_grid(description, box, read_grid_samples(parameters, "density", box, 0, "density"));
 }
 
 void check_depth(const Medium& medium, const Location& at) {
@@ -178,11 +144,60 @@ bool scatters(const Medium& medium) {
   return std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
 }
 
+/// pbrt-v4's "rgbgrid".
+void read_colours(const MediumDescription& description, const WavelengthGroups& groups,
+                  const LightOptions& options, int source, Medium& medium) {
+  const Parameters& parameters = description.entity.parameters;
+  if (!parameters.find("sigma_a") && !parameters.find("sigma_s"))
+    throw scene_error(parameters.location(), "a rgbgrid needs \"rgb sigma_a\" or \"rgb sigma_s\"");
+  const GridBox box = read_grid_box(description);
+  const double scale = read_scale(parameters);
+  const BandSpectrum white = groups.sampled([&](double) { return scale; });
+  const auto read = [&](const char* name) -> std::shared_ptr<const ColourSamples> {
+    if (!parameters.find(name)) return nullptr;
+    return std::make_shared<const ColourSamples>(box.cells, read_grid_colours(parameters, name, box), white,
+                                                 groups);
+  };
+  const auto colours =
+      std::make_shared<const ColourCoefficients>(ColourCoefficients{read("sigma_a"), read("sigma_s"), scale});
+  std::vector<float> bounds;
+  constexpr double roundings = 1e-5;  // of sums of floats
+  for (std::size_t cell = 0; static_cast<double>(cell) < box.count(); ++cell) {
+    const double back = colours->scattering ? colours->scattering->greatest(cell) : scale;
+    const double all = (colours->absorption ? colours->absorption->greatest(cell) : scale) + back;
+    if (!(all <= densest))
+      throw scene_error(parameters.location(),
+                        fmt::format("a coefficient of {:g}; 0 to {:g} would be right", all, densest));
+    medium.scatters = medium.scatters || back > 0;
+    bounds.push_back(static_cast<float>((1 + roundings) * all));
+  }
+  medium.colours = colours;
+  medium.density = make_density_grid(description, box, std::move(bounds));
+  medium.absorption = groups.sampled([](double) { return 1; });
+  medium.scattering = groups.sampled([](double) { return 0; });
+  const auto emission = read_colour_emission(parameters, box, groups, options);
+  if (emission) emission->source = source;
+  medium.emission = emission;
+}
+
+/// \param source  of the light that it sends out, if it does.
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
-                   Unsupported& unsupported) {
+                   const LightOptions& options, int source, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
   const std::string& type = description.entity.type;
   Medium medium;
+  medium.g = read_g(parameters);
+  medium.angle_shares = AngleShares(medium.g);
+  const auto done = [&] {
+    if (medium.density) check_depth(medium, parameters.location());
+    parameters.find("type");
+    unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
+    return medium;
+  };
+  if (type == "rgbgrid") {
+    read_colours(description, groups, options, source, medium);
+    return done();
+  }
   if (type != "homogeneous" && type != "uniformgrid") {
     unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
     medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
@@ -201,14 +216,16 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
     medium.scattering =
         read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
   }
-  medium.g = read_g(parameters);
-  medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
-  if (type == "uniformgrid") medium.density = read_grid(description, unsupported);
-  if (medium.density) check_depth(medium, parameters.location());
-  parameters.find("type");
-  unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
-  return medium;
+  std::optional<GridBox> box;
+  if (type == "uniformgrid") {
+    box = read_grid_box(description);
+    medium.density = read_grid(description, *box, unsupported);
+  }
+  const auto emission = read_emission(parameters, box ? &*box : nullptr, groups, options, unsupported);
+  if (emission) emission->source = source;
+  medium.emission = emission;
+  return done();
 }
 
 }  // namespace
@@ -244,10 +261,13 @@ Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, U
 }
 
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,
-                               Unsupported& unsupported) {
+                               const LightOptions& options, Unsupported& unsupported) {
   std::vector<Medium> media;
-  for (const MediumDescription& description : scene.media)
-    media.push_back(make_medium(description, groups, unsupported));
+  std::size_t lights = scene.lights.size() + scene.area_lights.size();
+  for (const MediumDescription& description : scene.media) {
+    media.push_back(make_medium(description, groups, options, static_cast<int>(lights), unsupported));
+    lights += shines(description);
+  }
   return media;
 }
 
