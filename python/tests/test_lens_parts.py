@@ -123,6 +123,15 @@ def test_tables_are_built(program, over_frame):
         pz.LensDataTable.build(camera, progress=lambda *_: False)
 
 
+def test_tables_have_the_fields_that_pictures_need(program):
+    program.run("optics", "build", "m12-4.5mm", "--wavelengths", 550, "--sensor", "320x240@15", "--tolerance", "3e-4", "-o", "table.h5")
+    theirs = pz.LensDataTable.load(str(program.folder / "table.h5"))
+    ours = pz.LensDataTable.build(pz.Camera("m12-4.5mm", sensor="320x240@15"), wavelengths_nm=[550], tolerance=3e-4)
+    assert np.array_equal(ours.fields, theirs.fields) and len(ours.fields) > 31
+    with pytest.raises(pz.InputError, match="tolerance"):
+        pz.LensDataTable.build(pz.Camera("m12-4.5mm", sensor="320x240@15"), tolerance=-1)
+
+
 @pytest.mark.parametrize("spoil, wrong", [
     (lambda lens: setattr(lens.surfaces[0], "apertures", [{"rectangel": (1, 1)}]), '"rectangle" would be right'),
     (lambda lens: setattr(lens.surfaces[0], "apertures", [{"obscures": True}]), "rectangle or an ellipse"),
