@@ -10,7 +10,7 @@ install(TARGETS petzval EXPORT petzvalTargets ARCHIVE DESTINATION ${CMAKE_INSTAL
 
 # The public headers, and those that they include; all others are the library's own.
 set(PETZVAL_PUBLIC_HEADERS petzval.h dataset/dataset.h measure/colour_chart.h measure/photon_transfer.h
-  measure/picture_comparison.h measure/sfr/measure_picture.h optics/table_file.h report/lens_drawing.h target/formats/polygon_file.h
+  measure/picture_comparison.h measure/sfr/measure_picture.h report/lens_drawing.h target/formats/polygon_file.h
   target/test_charts.h)
 function(petzval_install_headers)
   set(waiting ${PETZVAL_PUBLIC_HEADERS})

@@ -7,6 +7,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/optics/table_file.h>
 #include <petzval/scene/scene_file.h>
 #include <petzval/sensor/sensor.h>
 
