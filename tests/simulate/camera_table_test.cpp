@@ -77,6 +77,13 @@ TEST(CameraTable, HasEvenFieldsWhereNoMoreAreNeeded) {
     EXPECT_NEAR(table.fields[i], table.fields.back() * double(i) / 30, 1e-12);
 }
 
+// A lens for 248 nm, whose PSFs at 550 nm have more cells of this sensor than kernels may have.
+TEST(CameraTable, HasEvenFieldsWhereKernelsWouldBeTooLarge) {
+  Camera camera = camera_with_table("us-5831776");
+  camera.sensor = read_sensor("third-inch-1280x960");
+  EXPECT_EQ(camera_table(camera, {.wavelengths_nm = {550}}).fields.size(), 31U);
+}
+
 TEST(CameraTable, SaysWhatWouldBeRight) {
   const Camera camera = camera_with_table("double-gauss");
   EXPECT_THROW(camera_table(camera, {.image_height_mm = -3}), InputError);

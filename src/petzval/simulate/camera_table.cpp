@@ -42,8 +42,13 @@ LensDataTable camera_table(const Camera& camera, const CameraTableOptions& asked
     if (asked.field_count || !camera.sensor) return build_lens_data_table(lens, options, progress);
     ImageOptions pictures;
     pictures.imaging.product.tolerance = asked.tolerance;
-    return build_table_of_pictures(lens, options, spread_wanted(pictures, camera.sensor->geometry.pitch_um),
-                                   progress);
+    try {
+      return build_table_of_pictures(lens, options, spread_wanted(pictures, camera.sensor->geometry.pitch_um),
+                                     progress);
+    } catch (const InputError&) {
+      // Kernels may have too many cells of this sensor to be compared. What else is wrong is said again.
+      return build_lens_data_table(lens, options, progress);
+    }
   });
 }
 

@@ -16,7 +16,7 @@ struct CameraTableOptions {
   /// Real image height to reach [mm]; absent: the corner of the camera's sensor, or the lens's largest field.
   std::optional<double> image_height_mm = {};
   /// Evenly spaced fields; absent: TableOptions::field_count of them, and for a camera with a sensor those
-  /// between them that its pictures need to `tolerance`.
+  /// between them that its pictures need to `tolerance`, unless PSFs are too wide for its pixels.
   std::optional<int> field_count = {};
   double tolerance = 1e-3;  ///< ProductOptions::tolerance of the pictures
   int frame_places = TableOptions{}.frame_places;
