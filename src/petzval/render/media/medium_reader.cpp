@@ -5,8 +5,10 @@
 #include <petzval/render/media/emission_reader.h>
 #include <petzval/render/media/medium.h>
 #include <petzval/render/media/named_media.h>
+#include <petzval/render/media/varied_medium.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
+#include <petzval/render/textures/texture_library.h>
 
 #include <algorithm>
 #include <map>
@@ -228,28 +230,32 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   return done();
 }
 
-}  // namespace
+/// How a subsurface material is stated.
+struct SubsurfaceStatement {
+  bool by_coefficients, by_reflectance, by_name;
 
-Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported) {
-  const Parameters& parameters = material.parameters;
-  const bool by_coefficients = parameters.find("sigma_a") || parameters.find("sigma_s"),
-             by_reflectance = parameters.find("reflectance") != nullptr,
-             by_name = parameters.find("name") != nullptr;
-  if (by_coefficients + by_reflectance + by_name > 1)
-    throw scene_error(parameters.location(),
-                      "a subsurface material is stated more than once; one of \"name\", \"reflectance\" "
-                      "(with \"mfp\") and \"sigma_a\" with \"sigma_s\" would be right");
-  if (parameters.find("mfp") && !by_reflectance)
-    throw scene_error(parameters.location_of("mfp"), "a mean free path without a \"reflectance\"");
+  explicit SubsurfaceStatement(const Parameters& parameters)
+      : by_coefficients(parameters.find("sigma_a") || parameters.find("sigma_s")),
+        by_reflectance(parameters.find("reflectance")),
+        by_name(parameters.find("name")) {
+    if (by_coefficients + by_reflectance + by_name > 1)
+      throw scene_error(parameters.location(),
+                        "a subsurface material is stated more than once; one of \"name\", \"reflectance\" "
+                        "(with \"mfp\") and \"sigma_a\" with \"sigma_s\" would be right");
+  }
+};
+
+Medium even_subsurface(const Parameters& parameters, const SubsurfaceStatement& is,
+                       const WavelengthGroups& groups, Unsupported& unsupported) {
   const double scale = read_scale(parameters);
   Medium medium;
   medium.g = read_g(parameters);
-  if (by_name && medium.g != 0)
+  if (is.by_name && medium.g != 0)
     throw scene_error(parameters.location_of("g"),
                       "named media scatter as if evenly; without \"g\" would be right");
-  if (by_reflectance) {
+  if (is.by_reflectance) {
     read_reflectance(parameters, scale, groups, unsupported, medium);
-  } else if (by_coefficients) {
+  } else if (is.by_coefficients) {
     medium.absorption = read_coefficient(parameters, "sigma_a", 0, scale, groups, unsupported);
     medium.scattering = read_coefficient(parameters, "sigma_s", 0, scale, groups, unsupported);
   } else {
@@ -258,6 +264,68 @@ Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, U
   medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   return medium;
+}
+
+/// For the boundary's index at each wavelength.
+auto albedo_tables(const Parameters& parameters, const WavelengthGroups& groups, Unsupported& unsupported) {
+  if (const Parameter* texture = parameters.find("eta", {"texture"}))
+    unsupported.report(texture->at, "a texture of \"eta\" below which \"reflectance\" counts");
+  const auto given = spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, unsupported);
+  std::map<float, std::shared_ptr<const AlbedoTable>> tables;
+  decltype(VariedMedium::albedos) result;
+  for (const Lanes& index : groups.sampled(given ? given->at : constant_spectrum(subsurface_index).at)) {
+    result.emplace_back();
+    for (int lane = 0; lane < lane_count; ++lane) {
+      if (!(index[lane] >= 1))
+        throw scene_error(parameters.location_of("eta"),
+                          "1 or more would be right below a surface of known reflectance");
+      std::shared_ptr<const AlbedoTable>& table = tables[index[lane]];
+      if (!table) table = std::make_shared<const AlbedoTable>(static_cast<double>(index[lane]));
+      result.back()[static_cast<std::size_t>(lane)] = table;
+    }
+  }
+  return result;
+}
+
+Medium varied_subsurface(const Parameters& parameters, const SubsurfaceStatement& is,
+                         const TextureLibrary& textures, Unsupported& unsupported) {
+  const auto varied = std::make_shared<VariedMedium>();
+  varied->scale = textures.float_parameter(parameters, "scale", 1);
+  varied->g = textures.float_parameter(parameters, "g", 0);
+  if (!parameters.find("scale", {"texture"})) read_scale(parameters);
+  if (!parameters.find("g", {"texture"})) read_g(parameters);
+  const auto read = [&](const char* name, SpectrumRole role, double otherwise) {
+    return textures.spectrum_parameter(parameters, name, role, otherwise);
+  };
+  if (is.by_reflectance) {
+    varied->reflectance = read("reflectance", SpectrumRole::albedo, 0.5);
+    varied->mfp = read("mfp", SpectrumRole::unbounded, 1);
+    varied->albedos = albedo_tables(parameters, textures.groups(), unsupported);
+  } else if (is.by_coefficients) {
+    varied->absorption = read("sigma_a", SpectrumRole::unbounded, 0);
+    varied->scattering = read("sigma_s", SpectrumRole::unbounded, 0);
+  } else {
+    Medium named;
+    read_named(parameters, "name", 1, textures.groups(), unsupported, named);
+    varied->coefficients[0] = named.absorption, varied->coefficients[1] = named.scattering;
+  }
+  Medium medium;
+  medium.scatters = true;
+  medium.absorption = medium.scattering = textures.groups().sampled([](double) { return 0; });
+  medium.varied = varied;
+  return medium;
+}
+
+}  // namespace
+
+Medium make_subsurface(const Entity& material, const TextureLibrary& textures, Unsupported& unsupported) {
+  const Parameters& parameters = material.parameters;
+  const SubsurfaceStatement is(parameters);
+  if (const Parameter* mfp = parameters.find("mfp"); mfp && !is.by_reflectance)
+    unsupported.report(mfp->at, "a mean free path without a \"reflectance\"");
+  for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp", "scale", "g"})
+    if (parameters.find(name, {"texture"})) return varied_subsurface(parameters, is, textures, unsupported);
+  return even_subsurface(parameters, is, textures.groups(), unsupported);
 }
 
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,
