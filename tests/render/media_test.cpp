@@ -489,7 +489,7 @@ TEST(Media, RefusesWhatIsNoMedium) {
             std::string::npos);
   EXPECT_EQ(with("\"string preset\" \"Skin1\" \"rgb sigma_a\" [ 1 1 1 ]"),
             "test.pbrt:4:1: a medium has either a preset or coefficients of its own");
-  EXPECT_NE(media_message("MakeNamedMedium \"a\" \"string type\" \"nanovdb\"").find("a medium \"nanovdb\""),
+  EXPECT_NE(media_message("MakeNamedMedium \"a\" \"string type\" \"cloud\"").find("a medium \"cloud\""),
             std::string::npos);
 }
 

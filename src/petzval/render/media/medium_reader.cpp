@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/media/diffuse_albedo.h>
 #include <petzval/render/media/emission_reader.h>
 #include <petzval/render/media/medium.h>
 #include <petzval/render/media/named_media.h>
+#include <petzval/render/media/nanovdb_file.h>
 #include <petzval/render/media/varied_medium.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
@@ -182,6 +184,42 @@ void read_colours(const MediumDescription& description, const WavelengthGroups& 
   medium.emission = emission;
 }
 
+/// pbrt-v4's "nanovdb": the grid "density" of a file, in the space that the file gives it.
+std::shared_ptr<const DensityGrid> read_voxels(const MediumDescription& description,
+                                               Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a nanovdb medium needs \"string filename\", a .nvdb file");
+  const Location& at = parameters.location_of("filename");
+  try {
+    const std::string bytes = read_whole_file(resolved_path(at, name));
+    if (has_nanovdb_grid(bytes, name, "temperature"))
+      unsupported.report(at, "a grid \"temperature\" of a nanovdb medium, which would shine");
+    VoxelGrid voxels = read_nanovdb(bytes, name, "density");
+    if (!std::ranges::all_of(voxels.values,
+                             [](float each) { return each >= 0 && static_cast<double>(each) <= densest; }))
+      throw InputError(name, "has a density below 0 or without end");
+    const auto& m = voxels.world_from_index;
+    const auto& o = voxels.origin;
+    MediumDescription placed = description;
+    placed.world_from_medium =
+        description.world_from_medium *
+        Transform(Matrix4{
+            {{m[0], m[1], m[2], o[0]}, {m[3], m[4], m[5], o[1]}, {m[6], m[7], m[8], o[2]}, {0, 0, 0, 1}}});
+    // The values are those at the whole indices, so that half a cell more is within the box.
+    const auto corner = [&](double more) {
+      const auto along = [&](std::size_t axis) {
+        return voxels.first[axis] - 0.5 + more * voxels.size[axis];
+      };
+      return Vector3{along(0), along(1), along(2)};
+    };
+    return make_density_grid(placed, {voxels.size, corner(0), corner(1)}, std::move(voxels.values));
+  } catch (const InputError& error) {
+    throw scene_error(at, error.what());
+  }
+}
+
 /// \param source  of the light that it sends out, if it does.
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
                    const LightOptions& options, int source, Unsupported& unsupported) {
@@ -200,7 +238,7 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
     read_colours(description, groups, options, source, medium);
     return done();
   }
-  if (type != "homogeneous" && type != "uniformgrid") {
+  if (type != "homogeneous" && type != "uniformgrid" && type != "nanovdb") {
     unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
     medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
     return medium;
@@ -223,6 +261,9 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   if (type == "uniformgrid") {
     box = read_grid_box(description);
     medium.density = read_grid(description, *box, unsupported);
+  } else if (type == "nanovdb") {
+    medium.density = read_voxels(description, unsupported);
+    return done();
   }
   const auto emission = read_emission(parameters, box ? &*box : nullptr, groups, options, unsupported);
   if (emission) emission->source = source;
