@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/media/nanovdb_file.h>
+#include <petzval/render/pbrt/scene_files.h>
 
 #include "media_scenes.h"
 
@@ -77,6 +78,12 @@ TEST(Nanovdb, IsAGridWhereTheFileSays) {
     EXPECT_GT(grid.mean[i], 50 * grid.deviation[i]);
     EXPECT_NEAR(file.mean[i], grid.mean[i], 4.5 * std::hypot(file.deviation[i], grid.deviation[i])) << i;
   }
+}
+
+TEST(Nanovdb, IsAFileOfTheScene) {
+  const SceneDescription scene = described(
+      "MakeNamedMedium \"a\" \"string type\" \"nanovdb\" \"string filename\" \"" + seeds + "ramp.nvdb\"");
+  EXPECT_EQ(scene_files(scene), std::vector{seeds + "ramp.nvdb"});
 }
 
 TEST(Nanovdb, RefusesWhatItCannotRead) {
