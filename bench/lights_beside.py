@@ -10,6 +10,7 @@ even light, with its standard error over the seeds: both state light in units of
 
 import argparse
 import pathlib
+import struct
 import subprocess
 import tempfile
 
@@ -63,6 +64,8 @@ def scenes():
     coloured = f'{rgb("sigma_a", 1, 0.5 + 0.5 * x, 0.4)} {rgb("sigma_s", 2 + 2 * y, 3, 1)} "float g" 0.3'
     lamp = f'LightSource "point" "point3 from" [ 2 2.5 -2 ] {GREY("I", 4)}'
     yield "cloud in colours", [grid("rgbgrid", coloured), lamp, BALL_OF_IT, FLOOR], None
+    of_file = f'"string type" "nanovdb" "string filename" "lumps.nvdb" {GREY("sigma_a", 2)} {GREY("sigma_s", 3)} "float g" 0.3'
+    yield "cloud of a file", [f'MakeNamedMedium "m" {of_file}', lamp, BALL_OF_IT, FLOOR], None
     sent = numbers("rgb", "Le", np.stack([1 + 0 * x, 0.5 + 0.5 * y, 0.2 + 0 * x], -1))
     yield "glowing, in colours", [grid("rgbgrid", f'{coloured} {sent} "float Lescale" 0.02'), BALL_OF_IT, FLOOR], None
 
@@ -84,6 +87,44 @@ def room():
             quad((-2, 0, -2), x, y), quad((-2, 0, 2), x, y), quad((2, 0, -2), (0, 1, 0), z), quad((2, 2, -2), (0, 1, 0), z),
             quad((2, 1, -2), (0, 1, 0), (0, 0, 1)), quad((2, 1, 1), (0, 1, 0), (0, 0, 1)),
             'Translate 0.5 0.4 0.5\nShape "sphere" "float radius" 0.4']
+
+
+def write_nvdb(path, values, voxel, corner):
+    """A grid of NanoVDB 32.4 (layout: comments of NanoVDB.h). values[z, y, x], up to 128 along each, are at corner + voxel * index."""
+    version, (z, y, x) = 32 << 21 | 4 << 10, values.shape
+    floats = lambda *numbers: struct.pack(f"<{len(numbers)}f", *numbers)
+    box = struct.pack("<6i", 0, 0, 0, x - 1, y - 1, z - 1)
+    parts = [(i, j, k) for i in range(0, x, 8) for j in range(0, y, 8) for k in range(0, z, 8)]
+    lower_size, upper_size, leaf_size = 1088 + 8 * 16 ** 3, 8256 + 8 * 32 ** 3, 96 + 4 * 8 ** 3
+    padded = np.zeros((128, 128, 128), "<f4")
+    padded[:x, :y, :z] = values.transpose(2, 1, 0)
+
+    def node(side, masks_at, children):
+        """`children`: place in the table and offset from the node."""
+        mask, table = np.zeros(side ** 3 // 8, np.uint8), np.zeros(side ** 3, "<i8")
+        for at, offset in children:
+            mask[at // 8] |= 1 << at % 8
+            table[at] = offset
+        head = box + bytes(8) + bytes(side ** 3 // 8) + mask.tobytes() + floats(0, 1, 0, 0)
+        return head.ljust(masks_at, b"\0") + table.tobytes()
+    upper = node(32, 8256, [(0, upper_size)])
+    lower = node(16, 1088, [((i // 8) << 8 | (j // 8) << 4 | k // 8, lower_size + n * leaf_size) for n, (i, j, k) in enumerate(parts)])
+    leaves = b"".join(struct.pack("<3i4B", i, j, k, 7, 7, 7, 2) + b"\xff" * 64 + floats(0, 1, 0, 0) + padded[i:i + 8, j:j + 8, k:k + 8].tobytes()
+                      for i, j, k in parts)
+    root = (box + struct.pack("<I", 1) + floats(0, 0, values.max(), 0, 0)).ljust(64, b"\0") + struct.pack("<QqIf", 0, 96, 0, 0).ljust(32, b"\0")
+    tree = struct.pack("<4Q6IQ", 160 + upper_size + lower_size, 160 + upper_size, 160, 64, len(parts), 1, 1, 0, 0, 0, values.size)
+    scale = np.eye(3).ravel()
+    world = struct.pack("<6d", *corner, *(np.array(corner) + voxel * np.array([x, y, z])))
+    maps = floats(*voxel * scale, *scale / voxel, *corner, 1) + struct.pack("<22d", *voxel * scale, *scale / voxel, *corner, 1)
+    size = 672 + len(tree) + len(root) + upper_size + lower_size + len(leaves)
+    grid = (b"NanoVDB0" + struct.pack("<QIIIIQ", 2 ** 64 - 1, version, 2, 0, 1, size) + b"density".ljust(256, b"\0") + maps + world
+            + struct.pack("<3dIIqI", voxel, voxel, voxel, 2, 1, size, 0)).ljust(672, b"\0")
+    key = 0
+    for letter in b"density":
+        key = (key * 67 + letter + (key >> 56)) % 2 ** 64
+    about = struct.pack("<QQQQII", size, size, key, values.size, 1, 2) + world + box + struct.pack("<3dI", voxel, voxel, voxel, 8)
+    about += struct.pack("<4I3IHHI", len(parts), 1, 1, 1, 0, 0, 0, 0, 0, version)
+    path.write_bytes(struct.pack("<8sIHH", b"NanoVDB0", version, 1, 0) + about + b"density\0" + grid + tree + root + upper + lower + leaves)
 
 
 def write_sky(folder):
@@ -143,6 +184,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             write_sky(folder)
+            write_nvdb(folder / "lumps.nvdb", lumps(), 2 / CELLS, 3 * [-1 + 1 / CELLS])
             pictures = [np.array([render(program.resolve(), things, eye, options.spp, seed, folder) for seed in range(1, options.seeds + 1)])
                         for render, program in ((ours, options.program), (theirs, options.pbrt))]
         ratios = pictures[0].mean((1, 2)) / pictures[1].mean((1, 2))

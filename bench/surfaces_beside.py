@@ -146,6 +146,21 @@ def texts(folder):
     squares = 'Texture "t" "float" "checkerboard" "float uscale" 8 "float vscale" 4 "float tex1" 0.05 "float tex2" 0.5\n'
     yield "coat, chequered", scene(squares + 'Material "coateddiffuse" "spectrum reflectance" [ 300 0.7 900 0.7 ] "float roughness" 0.1 '
                                    '"texture thickness" "t" "integer maxdepth" 100 "integer nsamples" 4')
+    turbid = ('Texture "a" "spectrum" "checkerboard" "float uscale" 8 "float vscale" 4 "spectrum tex1" [ 300 0.9 900 0.9 ] "spectrum tex2" [ 300 0.4 900 0.4 ]\n'
+              'Texture "g" "float" "checkerboard" "float uscale" 2 "float vscale" 4 "float tex1" 0.7 "float tex2" -0.3\n')
+    within = '"texture albedo" "a" "texture g" "g" "float thickness" 0.6 "integer maxdepth" 100 "integer nsamples" 4'
+    yield "turbid coat", scene(f'{turbid}Material "coateddiffuse" "spectrum reflectance" [ 300 0.7 900 0.7 ] "float roughness" 0 {within}')
+    yield "turbid coat, rough", scene(f'{turbid}Material "coateddiffuse" "spectrum reflectance" [ 300 0.2 900 0.2 ] "float roughness" 0.1 {within}')
+    yield "turbid coat, metal", scene(f'{turbid}Material "coatedconductor" "spectrum conductor.eta" [ 300 0.5 900 0.5 ] "spectrum conductor.k" [ 300 3 900 3 ] '
+                                      f'"float interface.roughness" 0 "float conductor.roughness" 0.1 {within}')
+    deep = scene('Material "subsurface" BELOW').replace('"path" "integer maxdepth" 6', '"volpath" "integer maxdepth" 100000')
+    deep = deep.replace('"float scale" 40', '"float scale" 0')  # which a smooth boundary lets nobody ask
+    colours = 'Texture "r" "spectrum" "checkerboard" "float uscale" 2 "float vscale" 2 "spectrum tex1" [ 300 0.8 900 0.8 ] "spectrum tex2" [ 300 0.3 900 0.3 ]\n'
+    lengths = 'Texture "m" "spectrum" "checkerboard" "float uscale" 2 "float vscale" 2 "spectrum tex1" [ 300 0.001 900 0.001 ] "spectrum tex2" [ 300 0.003 900 0.003 ]\n'
+    for name, texts_before, below in [("even", "", '"spectrum reflectance" [ 300 0.5 900 0.5 ] "spectrum mfp" [ 300 0.002 900 0.002 ]'),
+                                      ("reflectance", colours, '"texture reflectance" "r" "spectrum mfp" [ 300 0.002 900 0.002 ]'),
+                                      ("mfp", lengths, '"spectrum reflectance" [ 300 0.5 900 0.5 ] "texture mfp" "m"')]:
+        yield f"below, {name}", deep.replace('Material "subsurface" BELOW', f'{texts_before}Material "subsurface" {below}')
 
 
 # -------------------------------------------------------------------------------------------------------- programs

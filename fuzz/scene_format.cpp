@@ -4,6 +4,7 @@
 #include <petzval/render/camera/scene_camera.h>
 #include <petzval/render/gltf/gltf_scene.h>
 #include <petzval/render/materials/measured_brdf.h>
+#include <petzval/render/media/nanovdb_file.h>
 #include <petzval/render/path_tracer.h>
 
 #include <cmath>
@@ -53,6 +54,15 @@ bool try_scene(std::string_view bytes) {
 bool try_gltf(std::string_view bytes) {
   return try_described([&](render::Unsupported& unsupported) {
     return render::parse_gltf_scene(std::string(bytes), "/nowhere/fuzz.gltf", unsupported);
+  });
+}
+
+bool try_nanovdb(std::string_view bytes) {
+  return accepted([&] {
+    const render::VoxelGrid grid = render::read_nanovdb(bytes, "fuzz.nvdb", "density");
+    require(static_cast<double>(grid.values.size()) ==
+                static_cast<double>(grid.size[0]) * grid.size[1] * grid.size[2],
+            "a grid of another size than it says");
   });
 }
 

@@ -14,6 +14,7 @@ bool try_gltf(std::string_view bytes);
 
 /// A PLY mesh is refused in one line, or its triangles are corners that there are.
 bool try_ply(std::string_view bytes);
+bool try_nanovdb(std::string_view bytes);
 bool try_measured_brdf(std::string_view bytes);
 
 }  // namespace petzval::fuzz

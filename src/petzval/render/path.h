@@ -55,6 +55,8 @@ struct PathTracer::Path {
   double asked_mean = 1;  ///< of the lanes, or of the hero alone
   double hero_share = 1;  ///< of the hero, when the path began
   double beside = 0;      ///< density of add_beside() over the mean of `led_by`, where the medium scatters
+  std::unique_ptr<const Medium>
+      entered;  ///< what there is in `medium`, if it varies with where one enters it
   /// How much likelier a lamp that stands somewhere is asked from the last place by that.
   double asked_again = 1;
 

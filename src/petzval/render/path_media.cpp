@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ways of paths through media.
 #include <petzval/render/media/phase_function.h>
+#include <petzval/render/media/varied_medium.h>
 #include <petzval/render/path.h>
 
 namespace petzval::render {
+
+const Medium& PathTracer::medium_of(const Path& path, int medium) const {
+  const Medium& here = world_.media[static_cast<std::size_t>(medium)];
+  return here.varied && path.entered ? *path.entered : here;
+}
+
+void PathTracer::enter(Path& path, const Geometry& geometry, const TexturePoint& point, int group) const {
+  if (geometry.inside < 0 || geometry.inside == path.medium) return;
+  const Medium& below = world_.media[static_cast<std::size_t>(geometry.inside)];
+  if (below.varied) path.entered = std::make_unique<const Medium>(below.varied->at(point, group));
+}
 
 std::optional<double> PathTracer::fly(Path& path, double distance, int group, SobolSample& sample,
                                       const std::optional<Equiangular>& beside) const {
   if (path.alone) path.throughput = only(path.hero, path.throughput[path.hero]);
   Lots lots(sample.next1());
-  const Flight flight = world_.media[static_cast<std::size_t>(path.medium)].fly(
-      path.origin, path.direction, distance, group, path.hero, lots);
+  const Flight flight =
+      medium_of(path, path.medium).fly(path.origin, path.direction, distance, group, path.hero, lots);
   path.led_by *= flight.passage.flown, path.asked *= flight.passage.asked;
   path.throughput *= flight.passage.light;
   const double flown = path.mean(path.led_by);
@@ -22,7 +34,7 @@ std::optional<double> PathTracer::fly(Path& path, double distance, int group, So
 }
 
 void PathTracer::add_glow(Path& path, double distance, int group, SobolSample& sample) const {
-  const Medium& medium = world_.media[static_cast<std::size_t>(path.medium)];
+  const Medium& medium = medium_of(path, path.medium);
   if (!medium.emission) return;
   Lots lots(medium.density ? sample.next1() : 0);
   const Lanes light = medium.glow(path.origin, path.direction, distance, group, lots);
@@ -32,7 +44,7 @@ void PathTracer::add_glow(Path& path, double distance, int group, SobolSample& s
 
 std::optional<Equiangular> PathTracer::add_beside(Path& path, double distance, int group,
                                                   SobolSample& sample) const {
-  const Medium& medium = world_.media[static_cast<std::size_t>(path.medium)];
+  const Medium& medium = medium_of(path, path.medium);
   if (medium.density || !medium.scatters || options_.lights == PathOptions::Lights::by_chance) return {};
   const auto [which, where, choice] = sample.next3();
   const auto [u, v] = sample.next2();
@@ -48,7 +60,7 @@ std::optional<Equiangular> PathTracer::add_beside(Path& path, double distance, i
   plan.far_sum = 0;
   const std::optional<LightSample> light = world_.lights.sample(world_.geometries, plan, choice, u, v, group);
   if (!light || !(light->pdf > 0)) return beside;
-  const std::optional<Passage> way = open_way(place, *light, path.medium, group, path.hero, sample);
+  const std::optional<Passage> way = open_way(path, place, *light, path.medium, group, sample);
   if (!way) return beside;
   const double asked = path.mean(path.led_by * way->asked), density = beside->density(at);
   if (!(asked > least_density)) return beside;
@@ -65,8 +77,8 @@ std::optional<Equiangular> PathTracer::add_beside(Path& path, double distance, i
   return beside;
 }
 
-std::optional<Passage> PathTracer::open_way(Vector3 origin, const LightSample& light, int medium, int group,
-                                            int hero, SobolSample& sample) const {
+std::optional<Passage> PathTracer::open_way(const Path& path, Vector3 origin, const LightSample& light,
+                                            int medium, int group, SobolSample& sample) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!world_.media_end_openly && medium < 0) {
     if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return {};
@@ -82,8 +94,7 @@ std::optional<Passage> PathTracer::open_way(Vector3 origin, const LightSample& l
     if (geometry && !geometry->is_interface) return {};
     if (medium >= 0) {
       const double distance = hit ? hit->distance * length_of_way : light.place ? length_of_way : infinity;
-      passage *= world_.media[static_cast<std::size_t>(medium)].pass(origin, normalised(way), distance, group,
-                                                                     hero, lots);
+      passage *= medium_of(path, medium).pass(origin, normalised(way), distance, group, path.hero, lots);
     }
     if (!geometry) return passage;
     const SurfacePoint point = surface_point(*geometry, *hit, origin, way, world_.place_of(*hit));

@@ -81,7 +81,7 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
   if constexpr (!media) {
     if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return;
   } else {
-    const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
+    const std::optional<Passage> way = open_way(path, origin, light, medium, group, sample);
     if (!way) return;
     asked = path.mean(path.led_by * way->asked), flown = path.mean(path.led_by * way->flown);
     if (!(asked > least_density)) return;
@@ -144,7 +144,7 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
 }
 
 bool PathTracer::scatter_in_medium(Path& path, double distance, int group, SobolSample& sample) const {
-  const double g = world_.media[static_cast<std::size_t>(path.medium)].g;
+  const double g = medium_of(path, path.medium).g;
   path.origin = path.origin + distance * path.direction;
   const auto [choice, light_u, light_v] = sample.next3();
   path.plan = world_.lights.plan({.position = path.origin, .normal = path.direction, .all_around = true});
@@ -250,6 +250,7 @@ PathLight PathTracer::follow(Path& path, int group, SobolSample& sample, double 
     }
     if (material.normal_map || material.bump_map)
       point.shading_normal = tilted_normal(material, geometry, *hit, point);
+    if (media && geometry.parts_media) enter(path, geometry, texture_point, group);
     const Bsdf bsdf = material.bsdf(texture_point, group, path.hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};

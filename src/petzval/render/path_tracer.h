@@ -96,8 +96,11 @@ class PathTracer {
   std::optional<Equiangular> add_beside(Path& path, double distance, int group, SobolSample& sample) const;
   bool scatter_in_medium(Path& path, double distance, int group, SobolSample& sample) const;
   /// The straight way to a light; absent where something stands in it.
-  std::optional<Passage> open_way(Vector3 origin, const LightSample& light, int medium, int group, int hero,
-                                  SobolSample& sample) const;
+  std::optional<Passage> open_way(const Path& path, Vector3 origin, const LightSample& light, int medium,
+                                  int group, SobolSample& sample) const;
+  const Medium& medium_of(const Path& path, int medium) const;
+  /// On meeting a surface: what is below it, if that varies from place to place.
+  void enter(Path& path, const Geometry& geometry, const TexturePoint& point, int group) const;
   FirstSurface first_beyond(const Path& path, double limit, int group, SobolSample& sample) const;
 
   const World& world_;

@@ -27,7 +27,7 @@ class WorldBuilder {
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
       if (scene.materials[i].type != "subsurface") continue;
       below_surface_[static_cast<int>(i)] = static_cast<int>(world.media.size());
-      world.media.push_back(make_subsurface(scene.materials[i], world.groups, unsupported));
+      world.media.push_back(make_subsurface(scene.materials[i], textures, unsupported));
     }
   }
 
@@ -66,7 +66,9 @@ class WorldBuilder {
     geometry.parts_media = media.differ();
     geometry.inside = media.inside, geometry.outside = media.outside;
     world_.media_end_openly = world_.media_end_openly || (geometry.is_interface && geometry.parts_media);
-    geometry.needs_coordinates = varies(world_.materials, description.material);
+    geometry.needs_coordinates =
+        varies(world_.materials, description.material) ||
+        (media.inside >= 0 && world_.media[static_cast<std::size_t>(media.inside)].varied);
     geometry.reversed = description.reverse_orientation;
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
     if (description.area_light >= 0) light_up(description, geometry);

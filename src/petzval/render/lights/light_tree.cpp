@@ -186,10 +186,13 @@ LightTree::LightTree(std::span<const LightBounds> lights) : ways_(lights.size())
     find_ways(entries_[i], static_cast<std::uint32_t>(i), 0, 0);
 }
 
-/// The root, opened where most is unknown of most light.
+/// The root, opened where most is unknown of most light. Of few lights the forks choose well enough for the
+/// time that they take; among 400, 32 entries leave 0.6 of the variance of a median pixel that 8 leave.
 void LightTree::find_entries() {
+  constexpr std::size_t few = 8, lights_an_entry = 12;
+  const std::size_t enough = std::clamp(ways_.size() / lights_an_entry, few, most_entries);
   entries_ = {0};
-  while (entries_.size() < most_entries) {
+  while (entries_.size() < enough) {
     std::size_t open = entries_.size();
     double most = -1;
     for (std::size_t i = 0; i < entries_.size(); ++i) {

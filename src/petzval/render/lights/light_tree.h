@@ -41,11 +41,11 @@ struct LightBounds {
 
 /// Lights by place, direction and strength (Conty Estevez & Kulla, "Importance sampling of many lights with
 /// adaptive tree splitting", PACMCGIT 1 (2018) 2): a bound of what the lights of a node do at a point decides
-/// at each fork. A node that can do nothing there is never entered, and one that can, sometimes. Up to eight
-/// nodes near the root, the entries, are weighed all at once.
+/// at each fork. A node that can do nothing there is never entered, and one that can, sometimes. Some
+/// nodes near the root, the entries, are weighed all at once: 8, and 32 of many lights.
 class LightTree {
  public:
-  static constexpr std::size_t most_entries = 8;
+  static constexpr std::size_t most_entries = 32;
   using Weights = std::array<double, most_entries>;
 
   LightTree() = default;

@@ -62,6 +62,10 @@ class Bsdf {
   /// ways the lesser share lights it (KHR_materials_sheen).
   void cover(const Sheen& sheen, const Lanes& colour, double alpha);
 
+  /// What scatters inside the coat of a layered kind, whose thickness is its extinction.
+  /// \param albedo  what it leaves of light each time. \param g  of Henyey and Greenstein's phase function.
+  void make_turbid(const Lanes& albedo, double g);
+
   /// f for both directions; zero for mirrors.
   Lanes value(Vector3 wo, Vector3 wi) const;
   /// The density with which sample() chooses wi; zero for mirrors.
@@ -81,6 +85,7 @@ class Bsdf {
  private:
   enum class Kind { diffuse, coated, conductor, dielectric, thin, layered, measured };
   class LayerWalk;
+  class TurbidWalk;
   Bsdf(Kind kind, Microfacets facets) : kind_(kind), facets_(facets) {}
 
   Lanes bare_value(Vector3 wo, Vector3 wi) const;
@@ -97,6 +102,8 @@ class Bsdf {
   Lanes layered_value(Vector3 wo, Vector3 wi) const;
   double layered_pdf(Vector3 wo, Vector3 wi) const;
   Lanes layered_mirror(double cos) const;
+  Lanes turbid_value(Vector3 wo, Vector3 wi) const;
+  std::optional<BsdfSample> sample_turbid(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_diffuse(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_coated(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_conductor(Vector3 wo, double u, double v) const;
@@ -110,7 +117,7 @@ class Bsdf {
   Lanes second_ = Lanes::all(0);  ///< transmittance, or k
   double eta_ = 1;
   int hero_ = 0;
-  bool mirror_ = false, disperses_ = false;
+  bool mirror_ = false, disperses_ = false, turbid_ = false;
   const CoatingAlbedo* coating_ = nullptr;
   const Layering* layering_ = nullptr;
   double thickness_ = 0;           ///< of the coat
@@ -118,8 +125,8 @@ class Bsdf {
   const MeasuredBrdf* measured_ = nullptr;
   int group_ = 0;  ///< of wavelengths, of what is measured
   const Sheen* sheen_ = nullptr;
-  Lanes sheen_colour_ = Lanes::all(0);
-  double sheen_alpha_ = 1;
+  Lanes veil_colour_ = Lanes::all(0);  ///< of the sheen, or the albedo of what is in a turbid coat
+  double veil_shape_ = 1;              ///< alpha of the sheen, or g of what is in a turbid coat
 };
 
 /// A direction over the hemisphere with density cos/π, from a point of the unit square (Shirley & Chiu 1997).

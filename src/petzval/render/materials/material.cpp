@@ -74,7 +74,13 @@ void read_diffuse_transmission(const Parameters& parameters, const TextureLibrar
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.25);
   material.transmittance =
       textures.spectrum_parameter(parameters, "transmittance", SpectrumRole::albedo, 0.25);
-  material.transmittance_scale = parameters.number("scale", 1);
+  if (parameters.find("scale", {"texture"})) {
+    const FloatTexture scale = textures.float_parameter(parameters, "scale");
+    for (SpectrumTexture* each : {&material.reflectance, &material.transmittance})
+      *each = std::make_shared<ScaledTexture<Lanes>>(*each, scale);
+  } else {
+    material.transmittance_scale = parameters.number("scale", 1);
+  }
 }
 
 /// What materials share.
@@ -84,23 +90,45 @@ struct SharedParts {
   std::shared_ptr<const Sheen> sheen;
 };
 
+/// Of a coat in which light is scattered, if not given; pbrt-v4's.
+constexpr double thickness_of_turbid = 0.01;
+
+/// Index of a coat, one number: of a glass at the d line.
+double read_coat_index(const Parameters& parameters, const char* name, Unsupported& unsupported) {
+  constexpr double d_line_nm = 587.56, otherwise = 1.5;
+  if (const Parameter* texture = parameters.find(name, {"texture"})) {
+    unsupported.report(texture->at, fmt::format("a texture of \"{}\"", name));
+    return otherwise;
+  }
+  const auto spectrum = spectrum_parameter(parameters, name, SpectrumRole::unbounded, unsupported);
+  const double index = spectrum ? spectrum->at(d_line_nm) : otherwise;
+  if (!(index > 1 && index < 4))
+    throw scene_error(parameters.location_of(name),
+                      fmt::format("a coating of index {}; above 1 and below 4 would be right", index));
+  return index;
+}
+
+/// What scatters light inside a coat: "albedo" and "g" of pbrt-v4.
+void read_turbidity(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
+  material.coat_g = textures.float_parameter(parameters, "g", 0);
+  if (material.coat_g->is_constant() && !(std::abs(material.coat_g->at({}, 0)) < 1))
+    throw scene_error(parameters.location_of("g"), "a mean cosine above -1 and below 1 would be right");
+  const Parameter* albedo = parameters.find("albedo");
+  if (albedo && (albedo->type == "texture" || albedo->numbers.empty() ||
+                 std::ranges::any_of(albedo->numbers, [](double each) { return each != 0; })))
+    material.coat_albedo = textures.spectrum_parameter(parameters, "albedo", SpectrumRole::albedo);
+}
+
 /// What a clear coat is: pbrt-v4's parameters of coateddiffuse and coatedconductor.
 const Layering& read_layering(const Parameters& parameters, const TextureLibrary& textures,
                               Unsupported& unsupported, const char* eta, Material& material) {
   Layering& layering = material.layering;
-  const auto even = [&](const char* name, double otherwise) {
-    const Parameter* texture = parameters.find(name, {"texture"});
-    if (texture) unsupported.report(texture->at, fmt::format("a texture of \"{}\"", name));
-    return texture ? otherwise : parameters.number(name, otherwise);
-  };
-  layering.eta = even(eta, 1.5);
-  if (!(layering.eta > 1 && layering.eta < 4))
-    throw scene_error(parameters.location_of(eta),
-                      fmt::format("a coating of index {}; above 1 and below 4 would be right", layering.eta));
+  layering.eta = read_coat_index(parameters, eta, unsupported);
+  read_turbidity(parameters, textures, material);
   if (parameters.find("thickness", {"texture"}))
     material.coat_thickness = textures.float_parameter(parameters, "thickness");
   else
-    layering.thickness = parameters.number("thickness", 0);
+    layering.thickness = parameters.number("thickness", material.coat_albedo ? thickness_of_turbid : 0);
   if (!(layering.thickness >= 0))
     throw scene_error(parameters.location_of("thickness"), "0 or more would be right");
   const auto count = [&](const char* name, int otherwise) {
@@ -111,11 +139,6 @@ const Layering& read_layering(const Parameters& parameters, const TextureLibrary
   };
   layering.max_depth = count("maxdepth", 0);
   layering.walks = count("nsamples", 1);
-  parameters.find("g");  // of a medium, which there is none of
-  if (const Parameter* albedo = parameters.find("albedo"))
-    if (albedo->type == "texture" ||
-        std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
-      unsupported.report(albedo->at, "a medium inside a coating");
   return layering;
 }
 
@@ -173,14 +196,12 @@ void read_coated_conductor(const Parameters& parameters, const TextureLibrary& t
 }
 
 /// The boundary of pbrt-v4's "subsurface"; what is below it is a medium (make_subsurface()).
-void read_subsurface(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
-                     Material& material) {
+void read_subsurface(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
   material.kind = Material::Kind::dielectric;
   material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.33);
   read_roughness(parameters, textures, material);
   for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp", "scale", "g", "name"})
-    if (const Parameter* parameter = parameters.find(name); parameter && parameter->type == "texture")
-      unsupported.report(parameter->at, "a subsurface material that varies over its surface");
+    parameters.find(name);
 }
 
 void read_measured(const Parameters& parameters, const TextureLibrary& textures, SharedParts& shared,
@@ -281,7 +302,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
     read_roughness(parameters, textures, material);
   } else if (entity.type == "subsurface") {
-    read_subsurface(parameters, textures, unsupported, material);
+    read_subsurface(parameters, textures, material);
   } else if (entity.type == "measured") {
     read_measured(parameters, textures, shared, material);
   } else if (entity.type == "thindielectric") {
@@ -339,19 +360,8 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
       const Microfacets facets = facets_at(*this, point, group);
       return Bsdf::coated_diffuse(base_at(*this, facets, point, group), coating->eta(), facets, *coating);
     }
-    case Kind::layered: {
-      const Microfacets coat = facets_at(*this, point, group);
-      std::optional<double> thickness;
-      if (coat_thickness) thickness = std::max(0.0, coat_thickness->at(point, group));
-      if (layering.metal) {
-        const auto [n, absorption] = metal_at(*this, point, group);
-        return Bsdf::layered(n, absorption, coat,
-                             facets_at(base_roughness_u, base_roughness_v, remap_roughness, point, group),
-                             layering, thickness);
-      }
-      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering,
-                           thickness);
-    }
+    case Kind::layered:
+      return layered_bsdf(point, group);
     case Kind::conductor: {
       const auto [n, absorption] = metal_at(*this, point, group);
       return Bsdf::conductor(n, absorption, facets_at(*this, point, group));
@@ -370,6 +380,28 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
   return Bsdf::diffuse(reflectance ? clamped_albedo(reflectance->at(point, group)) : Lanes::all(0));
 }
 
+Bsdf Material::layered_bsdf(const TexturePoint& point, int group) const {
+  const Microfacets coat = facets_at(*this, point, group);
+  std::optional<double> thickness;
+  if (coat_thickness) thickness = std::max(0.0, coat_thickness->at(point, group));
+  const auto layered = [&] {
+    if (!layering.metal)
+      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering,
+                           thickness);
+    const auto [n, absorption] = metal_at(*this, point, group);
+    return Bsdf::layered(n, absorption, coat,
+                         facets_at(base_roughness_u, base_roughness_v, remap_roughness, point, group),
+                         layering, thickness);
+  };
+  Bsdf bsdf = layered();
+  if (!coat_albedo || !(thickness.value_or(layering.thickness) > 0)) return bsdf;
+  constexpr double most_g = 0.999;  // of a texture
+  const double g = std::clamp(coat_g->at(point, group), -most_g, most_g);
+  const Lanes albedo = clamped_albedo(coat_albedo->at(point, group));
+  if (!albedo.is_black()) bsdf.make_turbid(albedo, g);
+  return bsdf;
+}
+
 std::vector<Material> make_materials(const SceneDescription& scene, const TextureLibrary& textures,
                                      Unsupported& unsupported) {
   std::vector<Material> materials;
@@ -383,12 +415,12 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
 
 bool varies(const std::vector<Material>& materials, int index) {
   const Material& material = materials[static_cast<std::size_t>(index)];
-  for (const SpectrumTexture* each :
-       {&material.reflectance, &material.transmittance, &material.eta, &material.k, &material.sheen_colour})
+  for (const SpectrumTexture* each : {&material.reflectance, &material.transmittance, &material.eta,
+                                      &material.k, &material.sheen_colour, &material.coat_albedo})
     if (*each && !(*each)->is_constant()) return true;
   for (const FloatTexture* each :
        {&material.roughness_u, &material.roughness_v, &material.base_roughness_u, &material.base_roughness_v,
-        &material.mix_amount, &material.sheen_roughness, &material.coat_thickness})
+        &material.mix_amount, &material.sheen_roughness, &material.coat_thickness, &material.coat_g})
     if (*each && !(*each)->is_constant()) return true;
   if (material.normal_map || material.bump_map) return true;
   return material.kind == Material::Kind::mix &&

@@ -39,6 +39,8 @@ struct Material {
   bool remap_roughness = true;                      ///< alpha = √roughness
   Layering layering;
   FloatTexture coat_thickness;  ///< null: that of `layering`
+  SpectrumTexture coat_albedo;  ///< of what scatters inside the coat; null: nothing does
+  FloatTexture coat_g;
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
@@ -57,6 +59,7 @@ struct Material {
 
  private:
   Bsdf bare_bsdf(const TexturePoint& point, int group, int hero) const;
+  Bsdf layered_bsdf(const TexturePoint& point, int group) const;
 };
 
 /// All materials of a scene, in the order of its description.

@@ -15,6 +15,9 @@
 
 namespace petzval::render {
 
+class TextureLibrary;
+struct VariedMedium;
+
 /// What a straight way through media does, wavelength by wavelength; everything up to one common factor.
 /// (The path integral of null scattering: Miller, Georgiev & Jarosz, ACM Trans. Graph. 38 (2019) 4.)
 struct Passage {
@@ -46,6 +49,8 @@ struct Medium {
   /// In place of the coefficients, if not null; `density` is then what no wavelength's extinction exceeds.
   std::shared_ptr<const ColourCoefficients> colours;
   std::shared_ptr<const Emission> emission;  ///< null: dark
+  /// Not null: what a path meets is that of where it has entered (Path::entered).
+  std::shared_ptr<const VariedMedium> varied;
 
   Lanes extinction(int group) const {
     return absorption[static_cast<std::size_t>(group)] + scattering[static_cast<std::size_t>(group)];
@@ -70,7 +75,7 @@ struct Medium {
 
 /// What is below the boundary of a material "subsurface" of pbrt-v4. \throws InputError; through
 /// `unsupported`.
-Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported);
+Medium make_subsurface(const Entity& material, const TextureLibrary& textures, Unsupported& unsupported);
 
 /// All media of a scene, in the order of its description. \throws InputError with file, line and column, and
 /// through `unsupported`.

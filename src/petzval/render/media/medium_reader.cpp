@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/media/diffuse_albedo.h>
 #include <petzval/render/media/emission_reader.h>
 #include <petzval/render/media/medium.h>
 #include <petzval/render/media/named_media.h>
+#include <petzval/render/media/nanovdb_file.h>
+#include <petzval/render/media/varied_medium.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
+#include <petzval/render/textures/texture_library.h>
 
 #include <algorithm>
 #include <map>
@@ -180,6 +184,42 @@ void read_colours(const MediumDescription& description, const WavelengthGroups& 
   medium.emission = emission;
 }
 
+/// pbrt-v4's "nanovdb": the grid "density" of a file, in the space that the file gives it.
+std::shared_ptr<const DensityGrid> read_voxels(const MediumDescription& description,
+                                               Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a nanovdb medium needs \"string filename\", a .nvdb file");
+  const Location& at = parameters.location_of("filename");
+  try {
+    const std::string bytes = read_whole_file(resolved_path(at, name));
+    if (has_nanovdb_grid(bytes, name, "temperature"))
+      unsupported.report(at, "a grid \"temperature\" of a nanovdb medium, which would shine");
+    VoxelGrid voxels = read_nanovdb(bytes, name, "density");
+    if (!std::ranges::all_of(voxels.values,
+                             [](float each) { return each >= 0 && static_cast<double>(each) <= densest; }))
+      throw InputError(name, "has a density below 0 or without end");
+    const auto& m = voxels.world_from_index;
+    const auto& o = voxels.origin;
+    MediumDescription placed = description;
+    placed.world_from_medium =
+        description.world_from_medium *
+        Transform(Matrix4{
+            {{m[0], m[1], m[2], o[0]}, {m[3], m[4], m[5], o[1]}, {m[6], m[7], m[8], o[2]}, {0, 0, 0, 1}}});
+    // The values are those at the whole indices, so that half a cell more is within the box.
+    const auto corner = [&](double more) {
+      const auto along = [&](std::size_t axis) {
+        return voxels.first[axis] - 0.5 + more * voxels.size[axis];
+      };
+      return Vector3{along(0), along(1), along(2)};
+    };
+    return make_density_grid(placed, {voxels.size, corner(0), corner(1)}, std::move(voxels.values));
+  } catch (const InputError& error) {
+    throw scene_error(at, error.what());
+  }
+}
+
 /// \param source  of the light that it sends out, if it does.
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
                    const LightOptions& options, int source, Unsupported& unsupported) {
@@ -198,7 +238,7 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
     read_colours(description, groups, options, source, medium);
     return done();
   }
-  if (type != "homogeneous" && type != "uniformgrid") {
+  if (type != "homogeneous" && type != "uniformgrid" && type != "nanovdb") {
     unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
     medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
     return medium;
@@ -221,6 +261,9 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   if (type == "uniformgrid") {
     box = read_grid_box(description);
     medium.density = read_grid(description, *box, unsupported);
+  } else if (type == "nanovdb") {
+    medium.density = read_voxels(description, unsupported);
+    return done();
   }
   const auto emission = read_emission(parameters, box ? &*box : nullptr, groups, options, unsupported);
   if (emission) emission->source = source;
@@ -228,28 +271,32 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   return done();
 }
 
-}  // namespace
+/// How a subsurface material is stated.
+struct SubsurfaceStatement {
+  bool by_coefficients, by_reflectance, by_name;
 
-Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported) {
-  const Parameters& parameters = material.parameters;
-  const bool by_coefficients = parameters.find("sigma_a") || parameters.find("sigma_s"),
-             by_reflectance = parameters.find("reflectance") != nullptr,
-             by_name = parameters.find("name") != nullptr;
-  if (by_coefficients + by_reflectance + by_name > 1)
-    throw scene_error(parameters.location(),
-                      "a subsurface material is stated more than once; one of \"name\", \"reflectance\" "
-                      "(with \"mfp\") and \"sigma_a\" with \"sigma_s\" would be right");
-  if (parameters.find("mfp") && !by_reflectance)
-    throw scene_error(parameters.location_of("mfp"), "a mean free path without a \"reflectance\"");
+  explicit SubsurfaceStatement(const Parameters& parameters)
+      : by_coefficients(parameters.find("sigma_a") || parameters.find("sigma_s")),
+        by_reflectance(parameters.find("reflectance")),
+        by_name(parameters.find("name")) {
+    if (by_coefficients + by_reflectance + by_name > 1)
+      throw scene_error(parameters.location(),
+                        "a subsurface material is stated more than once; one of \"name\", \"reflectance\" "
+                        "(with \"mfp\") and \"sigma_a\" with \"sigma_s\" would be right");
+  }
+};
+
+Medium even_subsurface(const Parameters& parameters, const SubsurfaceStatement& is,
+                       const WavelengthGroups& groups, Unsupported& unsupported) {
   const double scale = read_scale(parameters);
   Medium medium;
   medium.g = read_g(parameters);
-  if (by_name && medium.g != 0)
+  if (is.by_name && medium.g != 0)
     throw scene_error(parameters.location_of("g"),
                       "named media scatter as if evenly; without \"g\" would be right");
-  if (by_reflectance) {
+  if (is.by_reflectance) {
     read_reflectance(parameters, scale, groups, unsupported, medium);
-  } else if (by_coefficients) {
+  } else if (is.by_coefficients) {
     medium.absorption = read_coefficient(parameters, "sigma_a", 0, scale, groups, unsupported);
     medium.scattering = read_coefficient(parameters, "sigma_s", 0, scale, groups, unsupported);
   } else {
@@ -258,6 +305,68 @@ Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, U
   medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   return medium;
+}
+
+/// For the boundary's index at each wavelength.
+auto albedo_tables(const Parameters& parameters, const WavelengthGroups& groups, Unsupported& unsupported) {
+  if (const Parameter* texture = parameters.find("eta", {"texture"}))
+    unsupported.report(texture->at, "a texture of \"eta\" below which \"reflectance\" counts");
+  const auto given = spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, unsupported);
+  std::map<float, std::shared_ptr<const AlbedoTable>> tables;
+  decltype(VariedMedium::albedos) result;
+  for (const Lanes& index : groups.sampled(given ? given->at : constant_spectrum(subsurface_index).at)) {
+    result.emplace_back();
+    for (int lane = 0; lane < lane_count; ++lane) {
+      if (!(index[lane] >= 1))
+        throw scene_error(parameters.location_of("eta"),
+                          "1 or more would be right below a surface of known reflectance");
+      std::shared_ptr<const AlbedoTable>& table = tables[index[lane]];
+      if (!table) table = std::make_shared<const AlbedoTable>(static_cast<double>(index[lane]));
+      result.back()[static_cast<std::size_t>(lane)] = table;
+    }
+  }
+  return result;
+}
+
+Medium varied_subsurface(const Parameters& parameters, const SubsurfaceStatement& is,
+                         const TextureLibrary& textures, Unsupported& unsupported) {
+  const auto varied = std::make_shared<VariedMedium>();
+  varied->scale = textures.float_parameter(parameters, "scale", 1);
+  varied->g = textures.float_parameter(parameters, "g", 0);
+  if (!parameters.find("scale", {"texture"})) read_scale(parameters);
+  if (!parameters.find("g", {"texture"})) read_g(parameters);
+  const auto read = [&](const char* name, SpectrumRole role, double otherwise) {
+    return textures.spectrum_parameter(parameters, name, role, otherwise);
+  };
+  if (is.by_reflectance) {
+    varied->reflectance = read("reflectance", SpectrumRole::albedo, 0.5);
+    varied->mfp = read("mfp", SpectrumRole::unbounded, 1);
+    varied->albedos = albedo_tables(parameters, textures.groups(), unsupported);
+  } else if (is.by_coefficients) {
+    varied->absorption = read("sigma_a", SpectrumRole::unbounded, 0);
+    varied->scattering = read("sigma_s", SpectrumRole::unbounded, 0);
+  } else {
+    Medium named;
+    read_named(parameters, "name", 1, textures.groups(), unsupported, named);
+    varied->coefficients[0] = named.absorption, varied->coefficients[1] = named.scattering;
+  }
+  Medium medium;
+  medium.scatters = true;
+  medium.absorption = medium.scattering = textures.groups().sampled([](double) { return 0; });
+  medium.varied = varied;
+  return medium;
+}
+
+}  // namespace
+
+Medium make_subsurface(const Entity& material, const TextureLibrary& textures, Unsupported& unsupported) {
+  const Parameters& parameters = material.parameters;
+  const SubsurfaceStatement is(parameters);
+  if (const Parameter* mfp = parameters.find("mfp"); mfp && !is.by_reflectance)
+    unsupported.report(mfp->at, "a mean free path without a \"reflectance\"");
+  for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp", "scale", "g"})
+    if (parameters.find(name, {"texture"})) return varied_subsurface(parameters, is, textures, unsupported);
+  return even_subsurface(parameters, is, textures.groups(), unsupported);
 }
 
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,

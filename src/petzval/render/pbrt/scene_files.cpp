@@ -39,6 +39,7 @@ std::vector<std::string> scene_files(const SceneDescription& scene) {
     all.add(*entity);
   for (const TextureDescription& texture : scene.textures) all.add(texture.entity);
   for (const Entity& material : scene.materials) all.add(material);
+  for (const MediumDescription& medium : scene.media) all.add(medium.entity);
   for (const Entity& light : scene.area_lights) all.add(light);
   for (const LightDescription& light : scene.lights) all.add(light.entity);
   for (const ShapeDescription& shape : scene.shapes) all.add(shape.entity);

@@ -31,6 +31,18 @@ class ConstantSpectrum final : public Texture<Lanes> {
   BandSpectrum value_;
 };
 
+class SameForAllWavelengths final : public Texture<Lanes> {
+ public:
+  explicit SameForAllWavelengths(FloatTexture texture) : texture_(std::move(texture)) {}
+  Lanes at(const TexturePoint& point, int group) const override {
+    return Lanes::all(texture_->at(point, group));
+  }
+  double fineness() const override { return texture_->fineness(); }
+
+ private:
+  FloatTexture texture_;
+};
+
 /// Two textures in squares of one unit of (s, t), or in cubes of one unit of the texture's space.
 template <class Value>
 class Checkerboard final : public Texture<Value> {

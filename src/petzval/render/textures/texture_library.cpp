@@ -75,8 +75,12 @@ FloatTexture TextureLibrary::float_parameter(const Parameters& parameters, const
 
 SpectrumTexture TextureLibrary::spectrum_parameter(const Parameters& parameters, const std::string& name,
                                                    SpectrumRole role) const {
-  if (const Parameter* texture = parameters.find(name, {"texture"}))
+  if (const Parameter* texture = parameters.find(name, {"texture"})) {
+    const auto number = texture->strings.size() == 1 ? floats_.find(texture->strings[0]) : floats_.end();
+    if (role == SpectrumRole::unbounded && number != floats_.end() && !spectra_.contains(texture->strings[0]))
+      return std::make_shared<SameForAllWavelengths>(number->second);
     return named_texture(spectra_, *texture, "spectrum");
+  }
   const std::optional<SceneSpectrum> spectrum =
       render::spectrum_parameter(parameters, name, role, unsupported_);
   if (!spectrum) return nullptr;
