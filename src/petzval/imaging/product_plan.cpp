@@ -166,7 +166,7 @@ bool mend_rim(const PsfField& psfs, const SourceGrid& grid, const RimError& rim,
 
 /// The plan of a neighbouring band or layer, if it serves.
 std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs, const SourceGrid& grid,
-                                     const ProductOptions& options) {
+                                     const ProductOptions& options, LayoutErrors& errors) {
   const int needed = hint.tile + 2 * psfs.radius();
   const auto smallest = std::ranges::find_if(TileTransform::sizes, [&](int size) { return size >= needed; });
   const int transform = hint.transform != 0                      ? hint.transform
@@ -179,12 +179,12 @@ std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& ps
   // than half of what the picture needs.
   const double worth = kernel_count(psfs, grid, plan) / (2 * (2.0 * plan.nodes + 1));
   const int places = static_cast<int>(std::clamp(worth, 2.0, double(KernelError::first_places)));
-  plan.error_at_places = kernel_error_like(hint.error_at_places, psfs, grid, plan.tile, plan.nodes, places);
+  plan.error_at_places = errors.at_places_like(hint.error_at_places, plan.tile, plan.nodes, places);
   plan.estimated_error = plan.error_at_places.rms;
   if (options.layout_given()) return plan;
   const double limit = caution_of_hint * options.tolerance;
   if (plan.estimated_error > limit) return {};
-  const RimError rim = rim_error_like(hint.rim_error, psfs, grid, plan.tile, plan.nodes, limit);
+  const RimError rim = errors.at_rim_like(hint.rim_error, plan.tile, plan.nodes, limit);
   // A rim that has grown may want kernels of its own for far more cells: then another layout is cheaper.
   constexpr double much_dearer = 1.5;
   if (!mend_rim(psfs, grid, rim, plan) || plan.total_ns() > much_dearer * hint.total_ns()) return {};
@@ -208,15 +208,16 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
+  LayoutErrors errors(psfs, grid);
   if (hint)
-    if (std::optional<ProductPlan> plan = kept_plan(*hint, psfs, grid, options)) return plan;
+    if (std::optional<ProductPlan> plan = kept_plan(*hint, psfs, grid, options, errors)) return plan;
   const double limit = options.layout_given() ? INFINITY : caution * options.tolerance;
   const auto serves = [&](ProductPlan& plan) {
-    plan.error_at_places = kernel_error(psfs, grid, plan.tile, plan.nodes, limit);
+    plan.error_at_places = errors.at_places(plan.tile, plan.nodes, limit);
     plan.estimated_error = plan.error_at_places.rms;
     if (options.layout_given()) return true;
     return plan.estimated_error <= limit &&
-           mend_rim(psfs, grid, rim_error(psfs, grid, plan.tile, plan.nodes, limit), plan);
+           mend_rim(psfs, grid, errors.at_rim(plan.tile, plan.nodes, limit), plan);
   };
   std::vector<ProductPlan> failed;
   std::optional<ProductPlan> best;
@@ -244,10 +245,10 @@ ProductPlan plan_blended(const PsfField& psfs, const SourceGrid& grid, const Pro
   options.validate();
   ProductPlan plan;
   plan.tile = std::max(TileTransform::largest, psfs.radius());
+  LayoutErrors errors(psfs, grid);
   while (true) {
     const double limit = caution * options.tolerance;
-    plan.estimated_error =
-        kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit).rms;
+    plan.estimated_error = errors.at_places(plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit).rms;
     if (plan.estimated_error <= limit || plan.tile == 1) return plan;
     plan.tile /= 2;
   }
