@@ -140,7 +140,7 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
     for (int column = across / 2; column < columns; column += across) {
       const double x = errors.across().position(column), y = errors.down().position(row);
       const double r = std::sqrt(x * x + y * y), weight = errors.weight(column, row);
-      if (r < radius) places.inside.push_back({r, weight, column, row});
+      if (r < radius && errors.in_zone(column, row)) places.inside.push_back({r, weight, column, row});
       weights += weight;
       ++all;
     }
@@ -215,12 +215,14 @@ class LayoutErrors::Impl {
   }
 
   KernelError at_places(const Layout& layout, double limit) {
-    constexpr std::size_t at_once = KernelError::first_places;
+    // The few that were the worst of another layout come first.
+    std::size_t at_once = ordered_ ? 2 : KernelError::first_places;
     const double most = limit * limit * double(std::max<std::size_t>(1, count())) / share();
     std::vector<double> squares(count());
     double sum = 0;
-    for (std::size_t first = 0; first < count() && !(sum > most); first += at_once) {
-      const std::size_t end = std::min(count(), first + at_once);
+    for (std::size_t first = 0, end = 0; first < count() && !(sum > most); first = end) {
+      end = std::min(count(), first + at_once);
+      at_once = KernelError::first_places;
       parallel_for(end - first, [&](std::size_t i) {
         const std::size_t place = order_[first + i];
         squares[place] = square(layout, place);
@@ -229,6 +231,7 @@ class LayoutErrors::Impl {
     }
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
+    ordered_ = true;
     KernelError error;
     std::copy_n(squares.begin(), std::min(count(), error.first_squares.size()), error.first_squares.begin());
     const double total = std::accumulate(squares.begin(), squares.end(), 0.0);
@@ -280,6 +283,7 @@ class LayoutErrors::Impl {
   LitPlaces places_;
   std::vector<Kernel> exact_;
   std::vector<std::size_t> order_;
+  bool ordered_ = false;
   std::optional<Places> rim_;
   std::array<std::array<Kernel, places_a_shell>, most_shells> rim_exact_;
 };

@@ -2,6 +2,7 @@
 // How far mixtures of kernels are from the kernels that they stand for.
 #pragma once
 
+#include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/imaging/scene_look.h>
 #include <petzval/sensor/sensor.h>
@@ -12,21 +13,13 @@
 
 namespace petzval {
 
-/// Cells whose distance from the axis lies between two radii [cells].
-struct CellRing {
-  double from = std::numeric_limits<double>::infinity(), to = from;
-
-  bool empty() const { return !(from < to); }
-  bool holds(double radius) const { return radius >= from && radius < to; }
-};
-
 /// The cells from which light comes, and by how many they reach beyond the picture on every side: of an error
 /// that lands beside the picture nothing is seen.
 struct SourceGrid {
   SensorGeometry cells;
   int margin = 0;
-  const SceneLook* look = nullptr;                            ///< how bright cells are; null: all alike
-  CellRing zone{0, std::numeric_limits<double>::infinity()};  ///< those whose error counts
+  const SceneLook* look = nullptr;  ///< how bright cells are; null: all alike
+  CellRing zone = whole_frame;      ///< those whose error counts
 
   SourceGrid(const SensorGeometry& all, int beyond = 0, const SceneLook* brightness = nullptr)
       : cells(all), margin(beyond), look(brightness) {}
