@@ -13,4 +13,8 @@ namespace petzval {
 CellPlane blur_exact(const CellPlane& source, const PsfField& psfs, int margin,
                      const ProgressCallback& progress = {});
 
+/// The same of mirror symmetric kernels (KernelSymmetry::mirrored): one is made for the four places on either
+/// side of both axes.
+CellPlane blur_mirrored(const CellPlane& source, const PsfField& psfs, int margin);
+
 }  // namespace petzval

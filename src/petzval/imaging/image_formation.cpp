@@ -21,23 +21,24 @@ namespace petzval {
 /// The picture, or its sharp part and the light that lands far away.
 struct ImageSeries::Impl {
   Impl(const Scene& scene, const LensDataTable& table, const SensorGeometry& of_sensor,
-       const ImagingOptions& options, bool keeps)
+       const ImagingOptions& options, bool keeps, bool is_tail = false)
       : sensor(of_sensor),
         split(split_table(table, sensor, options)),
         picture(scene, split ? split->sharp : table, sensor, options, keeps) {
     if (split)
       tails = std::make_unique<Impl>(scene, split->tails,
                                      coarse_frame(sensor, tail_coarseness(options.tail_pixels)),
-                                     of_tails(options, tail_strength(*split)), keeps);
+                                     of_tails(options, tail_strength(*split), is_tail), keeps, true);
   }
 
-  /// \param strength  tail_strength().
-  static ImagingOptions of_tails(ImagingOptions options, double strength) {
+  /// \param strength  tail_strength(). \param again  what is split is a tail.
+  static ImagingOptions of_tails(ImagingOptions options, double strength, bool again) {
     options.photosite = {};
     options.supersample = 2;
     // Far light is smooth, so errors of its kernels do not average out. They are errors of a weak part; of
     // the part itself none may be large, however weak.
-    constexpr double smooth = 0.1, coarsest = 0.05;
+    const double smooth = again ? 1 : 0.1;  // tails of tails have it in their tolerance
+    constexpr double coarsest = 0.05;
     options.product.tolerance = std::clamp(options.product.tolerance * smooth / strength, 1e-6, coarsest);
     // What the frame needs of the scene is there; a part of a coarse pixel may lie beyond.
     if (options.surround == Surround::error) options.surround = Surround::extend;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -50,17 +51,28 @@ double squared_error(const Kernel& exact, const LitPart& lit, int at, int tile,
   return sum;
 }
 
-/// Of a layout of tiles, at cells counted outwards.
+struct Layout {
+  int tile;
+  std::vector<double> nodes;
+
+  Layout(int side, int count) : tile(side), nodes(lobatto_nodes(count)) {}
+};
+
+/// Of layouts of tiles, at cells counted outwards.
 class ErrorAtPlaces {
  public:
-  ErrorAtPlaces(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes)
+  ErrorAtPlaces(const PsfField& psfs, const SourceGrid& grid)
       : psfs_(psfs),
         across_(grid.cells.columns),
         down_(grid.cells.rows),
         margin_(grid.margin),
         look_(grid.look),
-        tile_(tile),
-        nodes_(lobatto_nodes(nodes)) {}
+        zone_(grid.zone) {}
+  const PsfField& psfs() const { return psfs_; }
+  double radius(int column, int row) const {
+    return std::hypot(across_.position(column), down_.position(row));
+  }
+  bool in_zone(int column, int row) const { return zone_.holds(radius(column, row)); }
   bool symmetric() const { return psfs_.symmetry() != KernelSymmetry::none; }
   const OutwardAxis& across() const { return across_; }
   const OutwardAxis& down() const { return down_; }
@@ -73,9 +85,13 @@ class ErrorAtPlaces {
     const double light = look_->place(place[0], place[1]).g_source_sr;
     return light * light;
   }
-  /// Σd²/(1 + Σh²). \param quadrant  where the cell lies.
-  double square(int column, int row, const Quadrant& quadrant = {true, true}) const {
-    const Kernel exact = kernel(column, row, quadrant);
+  /// Σd²/(1 + Σh²). \param quadrant  where the cell lies. \param kept  its true kernel, if it is known, and
+  /// for the next time.
+  double square(const Layout& layout, int column, int row, const Quadrant& quadrant, Kernel& kept) const {
+    constexpr std::size_t most_kept = 100'000;  // weights of a kernel: of all places 90 MB
+    Kernel made = kept.weights.empty() ? kernel(column, row, quadrant) : Kernel();
+    if (kept.weights.empty() && made.weights.size() <= most_kept) kept = std::move(made);
+    const Kernel& exact = kept.weights.empty() ? made : kept;
     double square = 0;
     for (const double weight : exact.weights) square += weight * weight;
     const auto last = [&](const OutwardAxis& axis, int at) {
@@ -84,8 +100,8 @@ class ErrorAtPlaces {
     const LitPart lit{last(across_, column), last(down_, row)};
     const auto along_row = [&](double at) { return kernel(at, row, quadrant); };
     const auto along_column = [&](double at) { return kernel(column, at, quadrant); };
-    return (squared_error(exact, lit, column, tile_, nodes_, along_row) +
-            squared_error(exact, lit, row, tile_, nodes_, along_column)) /
+    return (squared_error(exact, lit, column, layout.tile, layout.nodes, along_row) +
+            squared_error(exact, lit, row, layout.tile, layout.nodes, along_column)) /
            (1 + square);
   }
 
@@ -98,8 +114,7 @@ class ErrorAtPlaces {
   OutwardAxis across_, down_;
   int margin_;
   const SceneLook* look_;
-  int tile_;
-  std::vector<double> nodes_;
+  CellRing zone_;
 };
 
 /// A cell of a quadrant.
@@ -125,7 +140,7 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
     for (int column = across / 2; column < columns; column += across) {
       const double x = errors.across().position(column), y = errors.down().position(row);
       const double r = std::sqrt(x * x + y * y), weight = errors.weight(column, row);
-      if (r < radius) places.inside.push_back({r, weight, column, row});
+      if (r < radius && errors.in_zone(column, row)) places.inside.push_back({r, weight, column, row});
       weights += weight;
       ++all;
     }
@@ -143,38 +158,25 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
   return places;
 }
 
-/// The mean square error, weighted, over some of the places [from, to).
-double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places, std::size_t from,
-                   std::size_t to) {
-  constexpr std::size_t most = 6;
-  const std::size_t count = std::min(most, to - from);
-  std::array<double, most> squares{};
-  parallel_for(count, [&](std::size_t i) {
-    const Place& place = places[from + (2 * i + 1) * (to - from) / (2 * count)];
-    squares[i] = place.weight == 0 ? 0 : place.weight * errors.square(place.column, place.row);
-  });
-  double sum = 0;
-  for (const double square : squares) sum += square;
-  return sum / double(count);
-}
-
-}  // namespace
-
-namespace {
-
 /// A cell that light comes from.
 struct LitPlace {
   int column, row;
   Quadrant quadrant;
-  double weight;  ///< the weights' mean is 1
+  double weight;  ///< the weights' mean over all that is lit, in the zone or not, is 1
+};
+
+/// Places of a zone, and its share of what is lit.
+struct LitPlaces {
+  std::vector<LitPlace> inside;
+  double share = 1;
 };
 
 /// Evenly over what is lit of the grid, in an order in which any number of first places is spread over it.
-std::vector<LitPlace> lit_places(const ErrorAtPlaces& errors) {
+LitPlaces lit_places(const ErrorAtPlaces& errors) {
   constexpr int most_tried = 64 * KernelError::places;
-  std::vector<LitPlace> places;
-  double weights = 0;
-  for (int i = 1; i <= most_tried && places.size() < KernelError::places; ++i) {
+  LitPlaces places;
+  double weights = 0, all = 0;
+  for (int i = 1; i <= most_tried && places.inside.size() < KernelError::places; ++i) {
     LitPlace place{static_cast<int>(radical_inverse(i, 2) * errors.across().count()),
                    static_cast<int>(radical_inverse(i, 3) * errors.down().count()),
                    {true, true},
@@ -185,130 +187,191 @@ std::vector<LitPlace> lit_places(const ErrorAtPlaces& errors) {
     place.weight = errors.weight(place.column, place.row, place.quadrant);
     if (place.weight == 0) continue;
     weights += place.weight;
-    places.push_back(place);
+    ++all;
+    if (errors.in_zone(place.column, place.row)) places.inside.push_back(place);
   }
-  for (LitPlace& place : places) place.weight *= double(places.size()) / weights;
+  for (LitPlace& place : places.inside) place.weight *= all / weights;
+  if (all > 0) places.share = double(places.inside.size()) / all;
   return places;
 }
 
-double weighted_square(const ErrorAtPlaces& errors, const LitPlace& place) {
-  return place.weight * errors.square(place.column, place.row, place.quadrant);
-}
-
 }  // namespace
 
-KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
-  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  const std::vector<LitPlace> places = lit_places(errors);
-  constexpr std::size_t at_once = KernelError::first_places;
-  KernelError error;
-  double total = 0;
-  for (std::size_t first = 0; first < places.size(); first += at_once) {
-    std::array<double, at_once> squares{};
-    parallel_for(std::min(at_once, places.size() - first),
-                 [&](std::size_t i) { squares[i] = weighted_square(errors, places[first + i]); });
-    for (const double square : squares) total += square;
-    if (first == 0) error.first_squares = squares;
-    if (total > limit * limit * double(places.size())) break;
-  }
-  error.rms = std::sqrt(total / double(std::max<std::size_t>(1, places.size())));
-  return error;
-}
-
-KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
-                              int tile, int nodes, int few) {
-  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  KernelError error;
-  std::array<double, KernelError::first_places>& squares = error.first_squares;
-  const std::vector<LitPlace> places = lit_places(errors);
-  parallel_for(std::min(static_cast<std::size_t>(few), places.size()),
-               [&](std::size_t i) { squares[i] = weighted_square(errors, places[i]); });
-  const double now = std::accumulate(squares.begin(), squares.begin() + few, 0.0),
-               before = std::accumulate(known.first_squares.begin(), known.first_squares.begin() + few, 0.0);
-  const double change = before > 0 ? now / before : 1;
-  std::transform(known.first_squares.begin() + few, known.first_squares.end(), squares.begin() + few,
-                 [&](double square) { return square * change; });
-  error.rms = before > 0 ? known.rms * std::sqrt(change) : std::sqrt(now / few);
-  return error;
-}
-
-namespace {
-
-/// Cells of the picture inside the last height of a table, the outermost first, and shells of them.
-class Rim {
+class LayoutErrors::Impl {
  public:
-  Rim(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes)
-      : errors_(psfs, grid, tile, nodes),
-        sampled_(places_within(errors_, psfs.rim_mm() / (psfs.cell_um() * mm_per_um) + 1)) {}
+  Impl(const PsfField& psfs, const SourceGrid& grid)
+      : errors_(psfs, grid), places_(lit_places(errors_)), exact_(count()), order_(count()) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+  }
 
-  const std::vector<Place>& places() const { return sampled_.inside; }
-  bool is_too_small() const {
+  std::size_t count() const { return places_.inside.size(); }
+  double share() const { return places_.share; }
+
+  /// Of the first few places, weighted.
+  std::vector<double> first_squares(const Layout& layout, std::size_t few) {
+    std::vector<double> squares(std::min(few, count()));
+    parallel_for(squares.size(), [&](std::size_t i) { squares[i] = square(layout, i); });
+    return squares;
+  }
+
+  KernelError at_places(const Layout& layout, double limit) {
+    // The few that were the worst of another layout come first.
+    std::size_t at_once = ordered_ ? 2 : KernelError::first_places;
+    const double most = limit * limit * double(std::max<std::size_t>(1, count())) / share();
+    std::vector<double> squares(count());
+    double sum = 0;
+    for (std::size_t first = 0, end = 0; first < count() && !(sum > most); first = end) {
+      end = std::min(count(), first + at_once);
+      at_once = KernelError::first_places;
+      parallel_for(end - first, [&](std::size_t i) {
+        const std::size_t place = order_[first + i];
+        squares[place] = square(layout, place);
+      });
+      for (std::size_t i = first; i < end; ++i) sum += squares[order_[i]];
+    }
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
+    ordered_ = true;
+    KernelError error;
+    std::copy_n(squares.begin(), std::min(count(), error.first_squares.size()), error.first_squares.begin());
+    const double total = std::accumulate(squares.begin(), squares.end(), 0.0);
+    error.rms = std::sqrt(share() * total / double(std::max<std::size_t>(1, count())));
+    return error;
+  }
+
+  RimError at_rim(const Layout& layout, double limit);
+  /// The mean square error in the outermost cells; nothing if the rim is too small to be looked at.
+  std::optional<double> outermost(const Layout& layout);
+
+ private:
+  double square(const Layout& layout, std::size_t index) {
+    const LitPlace& place = places_.inside[index];
+    return place.weight * errors_.square(layout, place.column, place.row, place.quadrant, exact_[index]);
+  }
+  /// Cells of the picture inside the last height of a table, the outermost first.
+  const std::vector<Place>& rim() {
+    if (!rim_)
+      rim_ = places_within(errors_, errors_.psfs().rim_mm() / (errors_.psfs().cell_um() * mm_per_um) + 1);
+    return rim_->inside;
+  }
+  bool rim_is_too_small() {
     constexpr std::size_t fewest_places = 64;
-    return places().size() < fewest_places;
+    return rim().size() < fewest_places;
   }
   /// The first place behind shell k, from the rim inwards: each is as large as all outside it, a thousandth
   /// of the cells to an eighth.
-  std::size_t end_of_shell(int k) const { return (places().size() << k) / 1024; }
-  double share(std::size_t from, std::size_t to) const {
-    return sampled_.share * double(to - from) / double(places().size());
+  std::size_t end_of_shell(std::size_t k) { return (rim().size() << k) / 1024; }
+  double share_of(std::size_t from, std::size_t to) {
+    return rim_->share * double(to - from) / double(rim().size());
   }
-  double square(std::size_t from, std::size_t to) const { return mean_square(errors_, places(), from, to); }
+  /// The mean square error, weighted, over some of the places [from, to) of a shell.
+  double square_of_shell(const Layout& layout, std::size_t shell, std::size_t from, std::size_t to) {
+    const std::vector<Place>& places = rim();
+    const std::size_t few = std::min(places_a_shell, to - from);
+    std::array<double, places_a_shell> squares{};
+    parallel_for(few, [&](std::size_t i) {
+      const Place& place = places[from + (2 * i + 1) * (to - from) / (2 * few)];
+      squares[i] = place.weight == 0 ? 0
+                                     : place.weight * errors_.square(layout, place.column, place.row,
+                                                                     {true, true}, rim_exact_[shell][i]);
+    });
+    return std::accumulate(squares.begin(), squares.end(), 0.0) / double(few);
+  }
 
- private:
+  static constexpr std::size_t most_shells = 8, places_a_shell = 6;
   ErrorAtPlaces errors_;
-  Places sampled_;
+  LitPlaces places_;
+  std::vector<Kernel> exact_;
+  std::vector<std::size_t> order_;
+  bool ordered_ = false;
+  std::optional<Places> rim_;
+  std::array<std::array<Kernel, places_a_shell>, most_shells> rim_exact_;
 };
 
-}  // namespace
-
-RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
-  const Rim cells(psfs, grid, tile, nodes);
-  RimError rim;
-  if (cells.is_too_small()) return rim;
-
-  constexpr int most_shells = 8;
+RimError LayoutErrors::Impl::at_rim(const Layout& layout, double limit) {
+  RimError error;
+  if (rim_is_too_small()) return error;
   struct Shell {
     double inner_radius, square;  ///< of the whole grid
   };
   std::vector<Shell> shells;
   std::size_t from = 0;
   double rest = 0, worst = 0;
-  for (int k = 0; k < most_shells; ++k) {
-    const std::size_t to = std::max(from + 1, cells.end_of_shell(k));
-    const double share = cells.share(from, to), square = cells.square(from, to);
-    shells.push_back({cells.places()[to].radius, share * square});
+  for (std::size_t k = 0; k < most_shells; ++k) {
+    const std::size_t to = std::max(from + 1, end_of_shell(k));
+    const double share = share_of(from, to), square = square_of_shell(layout, k, from, to);
+    shells.push_back({rim()[to].radius, share * square});
     rest += share * square;
     worst = std::max(worst, square);
     from = to;
-    if (k == 0) rim.outermost = square;
+    if (k == 0) error.outermost = square;
     // Where the outermost are not worse than others, there is nothing about the rim.
     constexpr double usual = 4;
-    if (k == 1 && worst < usual * limit * limit) return rim;
+    if (k == 1 && worst < usual * limit * limit) return error;
   }
   for (const Shell& shell : shells) {
     if (rest <= limit * limit) break;
     rest -= shell.square;
-    rim.ring = {shell.inner_radius, cells.places().front().radius + 2.0 * tile};  // a tile that begins inside
+    // A tile may begin inside.
+    error.ring = {shell.inner_radius, rim().front().radius + 2.0 * layout.tile};
   }
-  rim.within = rest <= limit * limit;
-  rim.mean_square = std::max(0.0, rest);
-  return rim;
+  error.within = rest <= limit * limit;
+  error.mean_square = std::max(0.0, rest);
+  return error;
 }
 
-RimError rim_error_like(const RimError& known, const PsfField& psfs, const SourceGrid& grid, int tile,
-                        int nodes, double limit) {
-  if (!known.ring.empty()) return rim_error(psfs, grid, tile, nodes, limit);
-  const Rim cells(psfs, grid, tile, nodes);
+std::optional<double> LayoutErrors::Impl::outermost(const Layout& layout) {
+  if (rim_is_too_small()) return {};
+  return square_of_shell(layout, 0, 0, std::max<std::size_t>(1, end_of_shell(0)));
+}
+
+LayoutErrors::LayoutErrors(const PsfField& psfs, const SourceGrid& grid)
+    : impl_(std::make_unique<Impl>(psfs, grid)) {}
+LayoutErrors::~LayoutErrors() = default;
+
+KernelError LayoutErrors::at_places(int tile, int nodes, double limit) {
+  return impl_->at_places({tile, nodes}, limit);
+}
+
+RimError LayoutErrors::at_rim(int tile, int nodes, double limit) {
+  return impl_->at_rim({tile, nodes}, limit);
+}
+
+KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
+  return LayoutErrors(psfs, grid).at_places(tile, nodes, limit);
+}
+
+KernelError LayoutErrors::at_places_like(const KernelError& known, int tile, int nodes, int few) {
+  KernelError error;
+  std::array<double, KernelError::first_places>& squares = error.first_squares;
+  std::ranges::copy(impl_->first_squares({tile, nodes}, static_cast<std::size_t>(few)), squares.begin());
+  const double now = std::accumulate(squares.begin(), squares.begin() + few, 0.0),
+               before = std::accumulate(known.first_squares.begin(), known.first_squares.begin() + few, 0.0);
+  const double change = before > 0 ? now / before : 1;
+  std::transform(known.first_squares.begin() + few, known.first_squares.end(), squares.begin() + few,
+                 [&](double square) { return square * change; });
+  error.rms = before > 0 ? known.rms * std::sqrt(change) : std::sqrt(impl_->share() * now / few);
+  return error;
+}
+
+RimError LayoutErrors::at_rim_like(const RimError& known, int tile, int nodes, double limit) {
+  if (!known.ring.empty()) return at_rim(tile, nodes, limit);
   RimError rim;
-  if (cells.is_too_small()) return rim;
-  rim.outermost = cells.square(0, std::max<std::size_t>(1, cells.end_of_shell(0)));
+  const std::optional<double> outermost = impl_->outermost({tile, nodes});
+  if (!outermost) return rim;
+  rim.outermost = *outermost;
   const double change = known.outermost > 0 ? rim.outermost / known.outermost : 1;
   // The rest of a rim need not follow its outermost cells that far.
   constexpr double far = 2;
-  if (change > far) return rim_error(psfs, grid, tile, nodes, limit);
+  if (change > far) return at_rim(tile, nodes, limit);
   rim.mean_square = known.mean_square * change;
   rim.within = rim.mean_square <= limit * limit;
   return rim;
+}
+
+KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
+                              int tile, int nodes, int few) {
+  return LayoutErrors(psfs, grid).at_places_like(known, tile, nodes, few);
 }
 
 }  // namespace petzval

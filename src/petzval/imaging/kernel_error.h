@@ -2,12 +2,14 @@
 // How far mixtures of kernels are from the kernels that they stand for.
 #pragma once
 
+#include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/imaging/scene_look.h>
 #include <petzval/sensor/sensor.h>
 
 #include <array>
 #include <limits>
+#include <memory>
 
 namespace petzval {
 
@@ -17,6 +19,7 @@ struct SourceGrid {
   SensorGeometry cells;
   int margin = 0;
   const SceneLook* look = nullptr;  ///< how bright cells are; null: all alike
+  CellRing zone = whole_frame;      ///< those whose error counts
 
   SourceGrid(const SensorGeometry& all, int beyond = 0, const SceneLook* brightness = nullptr)
       : cells(all), margin(beyond), look(brightness) {}
@@ -42,14 +45,6 @@ KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile,
 KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
                               int tile, int nodes, int few = KernelError::first_places);
 
-/// Cells whose distance from the axis lies between two radii [cells].
-struct CellRing {
-  double from = std::numeric_limits<double>::infinity(), to = from;
-
-  bool empty() const { return !(from < to); }
-  bool holds(double radius) const { return radius >= from && radius < to; }
-};
-
 /// What kernel_error() misses: just inside the last height of a table, where a pupil may close within a few
 /// cells, mixtures may be off by far more than elsewhere.
 struct RimError {
@@ -59,12 +54,25 @@ struct RimError {
   bool within = true;      ///< false: even without the largest ring that is looked at it is beyond the limit
 };
 
-/// \param limit  for the RMS error of the rim, as a part of the whole grid's.
-RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit);
+/// The errors of many layouts, one after the other: true kernels are made once, and a layout is looked at
+/// first where the one before was at its worst. What it is given must outlive it.
+class LayoutErrors {
+ public:
+  LayoutErrors(const PsfField& psfs, const SourceGrid& grid);
+  ~LayoutErrors();
+  /// kernel_error()
+  KernelError at_places(int tile, int nodes, double limit);
+  /// kernel_error_like()
+  KernelError at_places_like(const KernelError& known, int tile, int nodes, int few);
+  /// \param limit  for the RMS error of the rim, as a part of the whole grid's.
+  RimError at_rim(int tile, int nodes, double limit);
+  /// The same for PSFs that differ little from others of which it is known: unless that found a ring, the
+  /// outermost cells tell by how much all have changed.
+  RimError at_rim_like(const RimError& known, int tile, int nodes, double limit);
 
-/// The same for PSFs that differ little from others of which it is known: unless that found a ring, the
-/// outermost cells tell by how much all have changed.
-RimError rim_error_like(const RimError& known, const PsfField& psfs, const SourceGrid& grid, int tile,
-                        int nodes, double limit);
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace petzval

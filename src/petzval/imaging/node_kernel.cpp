@@ -32,7 +32,7 @@ Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const Out
 
 NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
                          std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down,
-                         const Quadrant& quadrant)
+                         const Quadrant& quadrant, const std::vector<char>& needed)
     : psfs_(psfs),
       across_(across),
       down_(down),
@@ -44,7 +44,8 @@ NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const 
   std::vector<std::array<double, 2>> places_mm;
   for (std::size_t j = 0; j < nodes_down_; ++j)
     for (std::size_t i = 0; i < nodes_across_; ++i)
-      places_mm.push_back(place_mm(psfs, across_, down_, places_[i], places_[j], quadrant));
+      if (needed[j * nodes_across_ + i] != 0)
+        places_mm.push_back(place_mm(psfs, across_, down_, places_[i], places_[j], quadrant));
   psfs.prepare(places_mm);
 
   constexpr double most_bytes = 256e6;
@@ -53,7 +54,9 @@ NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const 
   weights_.resize(count() * weights);
   parallel_for(nodes_across_ * nodes_down_, [&](std::size_t node) {
     const std::size_t i = node % nodes_across_, j = node / nodes_across_;
-    if (j > i && j < nodes_across_ && i < nodes_down_) return;  // made as (j, i)
+    const bool has_image = j < nodes_across_ && i < nodes_down_;  // (j, i), which is the same transposed
+    if (j > i && has_image) return;
+    if (needed[node] == 0 && !(has_image && needed[i * nodes_across_ + j] != 0)) return;
     const Kernel kernel = made(i, j);
     std::copy(kernel.weights.begin(), kernel.weights.end(), weights_.data() + index(i, j) * weights);
   });

@@ -25,9 +25,10 @@ Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const Out
 class NodeKernels {
  public:
   /// \param places  of nodes, increasing [cells]. \param nodes_across, nodes_down  so many of them.
+  /// \param needed  those that are asked for, [down][across].
   NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
               std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down,
-              const Quadrant& quadrant);
+              const Quadrant& quadrant, const std::vector<char>& needed);
   /// Writes scale · weights to `out`. From any thread.
   void lay(std::size_t node_across, std::size_t node_down, double scale, float* out) const;
 

@@ -5,6 +5,7 @@
 #include <petzval/imaging/direct_blur.h>
 #include <petzval/imaging/transform_blur.h>
 
+#include <memory>
 #include <utility>
 #include <variant>
 
@@ -24,6 +25,9 @@ namespace petzval {
 /// places if the PSFs are mirror symmetric. Product convolution: Nagy & O'Leary 1998 (SIAM J. Sci. Comput.
 /// 19, 1063) with piecewise constant and linear weights; Escande & Weiss 2017 (J. Math. Imaging Vis. 59, 31).
 ///
+/// A plan may have larger tiles nearer to the axis. Between the zones light passes from one to the other
+/// within some cells, its shares adding up to all of it.
+///
 /// The sums are made by Fourier transforms or directly, as the plan says. Cells of the ring that it names
 /// get kernels of their own (blur_exact()).
 class ProductBlur {
@@ -34,7 +38,9 @@ class ProductBlur {
               TransformBlur::KernelSets memory = {})
       : psfs_(&psfs),
         by_(plan.direct ? By(std::in_place_type<DirectBlur>, psfs, grid, plan)
-                        : By(std::in_place_type<TransformBlur>, psfs, grid, plan, std::move(memory))) {}
+                        : By(std::in_place_type<TransformBlur>, psfs, grid, plan, std::move(memory))),
+        inner_(plan.inner.empty() ? nullptr : std::make_unique<ProductBlur>(psfs, grid, plan.inner.front())) {
+  }
   TransformBlur::KernelSets take_memory() && {
     auto* by_transforms = std::get_if<TransformBlur>(&by_);
     return by_transforms != nullptr ? std::move(*by_transforms).take_memory() : TransformBlur::KernelSets();
@@ -51,12 +57,11 @@ class ProductBlur {
 
  private:
   using By = std::variant<DirectBlur, TransformBlur>;
-  CellPlane blur_by_product(const CellPlane& source, int margin) const {
-    return std::visit([&](const auto& by) { return by.blur(source, margin); }, by_);
-  }
+  CellPlane blur_by_product(CellPlane source, int margin) const;
 
   const PsfField* psfs_;
   By by_;
+  std::unique_ptr<const ProductBlur> inner_;  ///< of the zone nearer to the axis; null without zones
 };
 
 }  // namespace petzval

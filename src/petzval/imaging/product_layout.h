@@ -5,9 +5,19 @@
 #include <petzval/imaging/kernel_maker.h>
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace petzval {
+
+/// Cells whose distance from the axis lies between two radii [cells].
+struct CellRing {
+  double from = std::numeric_limits<double>::infinity(), to = from;
+
+  bool empty() const { return !(from < to); }
+  bool holds(double radius) const { return radius >= from && radius < to; }
+};
+inline constexpr CellRing whole_frame{0, std::numeric_limits<double>::infinity()};
 
 /// One of the four quarters of a grid about the axis.
 struct Quadrant {
@@ -38,6 +48,20 @@ class OutwardAxis {
  private:
   bool odd() const { return cells_ % 2 != 0; }
   int cells_;
+};
+
+/// Tiles of a quadrant that have cells in a ring.
+class TilesInZone {
+ public:
+  TilesInZone(const CellRing& zone, const OutwardAxis& across, const OutwardAxis& down, int tile);
+  /// Their share of all tiles.
+  double share() const;
+  /// Which nodes they need: [node down][node across]. \param phases  nodes from tile to tile.
+  std::vector<char> nodes(std::size_t phases) const;
+
+ private:
+  std::size_t tiles_across_, tiles_down_;
+  std::vector<char> taken_;  ///< [tile down][tile across]
 };
 
 /// Chebyshev-Lobatto nodes on [0, 1]: the ends and, between them, (1 − cos(πa/(n − 1)))/2. Neighbouring tiles

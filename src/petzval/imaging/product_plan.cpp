@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/product_plan.h>
 #include <petzval/imaging/tile_blur.h>
@@ -28,12 +29,25 @@ constexpr double most_kernel_bytes = 400e6, most_row_bytes = 1600e6;
 constexpr double kernel_fixed_ns = 1700;  // of a kernel, whatever its size
 constexpr double deposit_ns = 2.5;        // per sample of a PSF and cell of a kernel
 
+bool is_whole(const CellRing& zone) {
+  return zone.from == 0 && std::isinf(zone.to);
+}
+
+/// Of the tiles of a layout, those in the grid's zone, about.
+double tile_share(const SourceGrid& grid, int tile) {
+  if (is_whole(grid.zone)) return 1;
+  constexpr int most = 64;  // along an axis
+  const OutwardAxis across(grid.cells.columns), down(grid.cells.rows);
+  return TilesInZone(grid.zone, across, down, std::max(tile, std::max(across.count(), down.count()) / most))
+      .share();
+}
+
 /// Kernels that a layout needs, and what one costs without its transform.
 double kernel_count(const PsfField& psfs, const SourceGrid& grid, const ProductPlan& plan) {
   const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(plan.tile)),
                down = std::ceil(OutwardAxis(grid.cells.rows).count() / double(plan.tile));
   const auto sets = double(kernel_set_count(psfs.symmetry()));
-  return sets * ((plan.nodes - 1) * across + 1) * ((plan.nodes - 1) * down + 1);
+  return sets * ((plan.nodes - 1) * across + 1) * ((plan.nodes - 1) * down + 1) * tile_share(grid, plan.tile);
 }
 double kernel_ns(const PsfField& psfs) {
   const double size = 2.0 * psfs.radius() + 1;
@@ -82,6 +96,7 @@ ProductPlan candidate(const PsfField& psfs, const SourceGrid& grid, int transfor
   plan.tile = tile;
   plan.nodes = nodes;
   plan.transform = transform;
+  plan.zone = grid.zone;
   const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(tile)),
                down = std::ceil(OutwardAxis(grid.cells.rows).count() / double(tile));
   const double lanes = double(lane_count()), columns = transform / lanes;
@@ -90,7 +105,8 @@ ProductPlan candidate(const PsfField& psfs, const SourceGrid& grid, int transfor
   const double bytes = hold_otfs(psfs, grid, plan);
   // Two quadrants at a time, where they share kernels.
   const int pairs = psfs.symmetry() == KernelSymmetry::none ? 4 : 2;
-  plan.filter_ns = pairs * across * down * lines * transform * line_ns + bytes * fetch_ns;
+  plan.filter_ns =
+      pairs * across * down * tile_share(grid, tile) * lines * transform * line_ns + bytes * fetch_ns;
   const double kernel_lines = (std::ceil((2 * psfs.radius() + 1) / lanes) + columns) / 2;
   plan.kernels_ns = kernel_count(psfs, grid, plan) *
                     (kernel_ns(psfs) + kernel_lines * transform * std::log2(transform) * kernel_line_ns);
@@ -117,7 +133,7 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid
   constexpr int most_direct_radius = 16;  // far beyond where transforms have won
   std::vector<ProductPlan> plans;
   const int widest = std::max(OutwardAxis(grid.cells.columns).count(), OutwardAxis(grid.cells.rows).count());
-  if (options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
+  if (is_whole(grid.zone) && options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
     each_layout(std::min(TileTransform::largest, widest), options,
                 [&](int tile, int nodes) { plans.push_back(direct_candidate(psfs, grid, tile, nodes)); });
   for (const int transform : TileTransform::sizes)
@@ -155,18 +171,20 @@ double cells_in(const CellRing& ring, const SensorGeometry& grid) {
 /// that keeps it within the limit.
 bool mend_rim(const PsfField& psfs, const SourceGrid& grid, const RimError& rim, ProductPlan& plan) {
   constexpr double weight_ns = 10;  // of exact_blur, per weight of a kernel and sample of its PSF
+  const double sharing = psfs.symmetry() == KernelSymmetry::mirrored ? 4 : 1;
   const double size = 2.0 * psfs.radius() + 1;
   plan.rim_error = rim;
   plan.exact = rim.ring;
-  plan.exact_ns =
-      rim.ring.empty() ? 0 : cells_in(rim.ring, grid.cells) * weight_ns * (psfs.coefficients() + size * size);
+  plan.exact_ns = rim.ring.empty() ? 0
+                                   : cells_in(rim.ring, grid.cells) / sharing * weight_ns *
+                                         (psfs.coefficients() + size * size);
   plan.estimated_error = std::hypot(plan.estimated_error, std::sqrt(rim.mean_square));
   return rim.within;
 }
 
 /// The plan of a neighbouring band or layer, if it serves.
 std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs, const SourceGrid& grid,
-                                     const ProductOptions& options) {
+                                     const ProductOptions& options, LayoutErrors& errors) {
   const int needed = hint.tile + 2 * psfs.radius();
   const auto smallest = std::ranges::find_if(TileTransform::sizes, [&](int size) { return size >= needed; });
   const int transform = hint.transform != 0                      ? hint.transform
@@ -179,12 +197,13 @@ std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& ps
   // than half of what the picture needs.
   const double worth = kernel_count(psfs, grid, plan) / (2 * (2.0 * plan.nodes + 1));
   const int places = static_cast<int>(std::clamp(worth, 2.0, double(KernelError::first_places)));
-  plan.error_at_places = kernel_error_like(hint.error_at_places, psfs, grid, plan.tile, plan.nodes, places);
+  plan.error_at_places = errors.at_places_like(hint.error_at_places, plan.tile, plan.nodes, places);
   plan.estimated_error = plan.error_at_places.rms;
   if (options.layout_given()) return plan;
   const double limit = caution_of_hint * options.tolerance;
   if (plan.estimated_error > limit) return {};
-  const RimError rim = rim_error_like(hint.rim_error, psfs, grid, plan.tile, plan.nodes, limit);
+  if (!std::isinf(grid.zone.to)) return plan;
+  const RimError rim = errors.at_rim_like(hint.rim_error, plan.tile, plan.nodes, limit);
   // A rim that has grown may want kernels of its own for far more cells: then another layout is cheaper.
   constexpr double much_dearer = 1.5;
   if (!mend_rim(psfs, grid, rim, plan) || plan.total_ns() > much_dearer * hint.total_ns()) return {};
@@ -204,34 +223,60 @@ void ProductOptions::validate() const {
         fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, TileTransform::largest));
 }
 
-std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& grid,
-                                        const ProductOptions& options,
-                                        const std::optional<ProductPlan>& hint) {
-  options.validate();
-  if (hint)
-    if (std::optional<ProductPlan> plan = kept_plan(*hint, psfs, grid, options)) return plan;
+namespace {
+
+/// Whether a layout fails where another has failed: a coarser one does, and one that is finer by too little.
+/// With n nodes the square of an error falls by the power 2n of a tile's side, and slower where kernels are
+/// rough.
+bool fails_like(const ProductPlan& failed, const ProductPlan& plan, double limit) {
+  if (plan.nodes > failed.nodes) return false;
+  if (plan.tile >= failed.tile) return true;
+  constexpr double luck = 4;
+  const double beyond = std::pow(failed.error_at_places.rms / limit, 2);
+  return beyond * std::pow(double(plan.tile) / failed.tile, 2 * failed.nodes) > luck;
+}
+
+void take_errors(const ProductPlan& from, ProductPlan& plan) {
+  plan.error_at_places = from.error_at_places;
+  plan.rim_error = from.rim_error;
+  plan.estimated_error = from.estimated_error;
+  plan.exact = from.exact;
+  plan.exact_ns = from.exact_ns;
+}
+
+/// The cheapest layout for a zone, if any serves.
+std::optional<ProductPlan> cheapest(const PsfField& psfs, const SourceGrid& grid,
+                                    const ProductOptions& options, LayoutErrors& errors) {
   const double limit = options.layout_given() ? INFINITY : caution * options.tolerance;
   const auto serves = [&](ProductPlan& plan) {
-    plan.error_at_places = kernel_error(psfs, grid, plan.tile, plan.nodes, limit);
+    plan.error_at_places = errors.at_places(plan.tile, plan.nodes, limit);
     plan.estimated_error = plan.error_at_places.rms;
     if (options.layout_given()) return true;
-    return plan.estimated_error <= limit &&
-           mend_rim(psfs, grid, rim_error(psfs, grid, plan.tile, plan.nodes, limit), plan);
+    if (plan.estimated_error > limit) return false;
+    return !std::isinf(grid.zone.to) ||
+           mend_rim(psfs, grid, errors.at_rim(plan.tile, plan.nodes, limit), plan);
   };
-  std::vector<ProductPlan> failed;
+  std::vector<ProductPlan> failed, served;
   std::optional<ProductPlan> best;
   const auto choose = [&](bool by_rows) {
     for (ProductPlan& plan : candidates(psfs, grid, options, by_rows)) {
       if (best && plan.total_ns() >= best->total_ns()) break;
-      // A coarser layout than one that failed fails too.
-      const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
-        return plan.tile >= other.tile && plan.nodes <= other.nodes;
+      if (std::ranges::any_of(failed,
+                              [&](const ProductPlan& other) { return fails_like(other, plan, limit); }))
+        continue;
+      // Another size of transforms makes the same errors.
+      const auto same = std::ranges::find_if(served, [&](const ProductPlan& other) {
+        return plan.tile == other.tile && plan.nodes == other.nodes;
       });
-      if (hopeless) continue;
-      if (!serves(plan))
+      if (same != served.end())
+        take_errors(*same, plan);
+      else if (serves(plan))
+        served.push_back(plan);
+      else {
         failed.push_back(plan);
-      else if (!best || plan.total_ns() < best->total_ns())
-        best = plan;
+        continue;
+      }
+      if (!best || plan.total_ns() < best->total_ns()) best = plan;
     }
   };
   choose(false);
@@ -240,14 +285,89 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
   return best;
 }
 
+/// The grid within a radius, and without it. Where light passes from one to the other both count.
+SourceGrid inner_zone(SourceGrid grid, double radius) {
+  grid.zone.to = radius;
+  return grid;
+}
+SourceGrid outer_zone(SourceGrid grid, double radius) {
+  grid.zone.from = radius - ProductPlan::fade;
+  return grid;
+}
+
+/// Two zones share the square of the error.
+ProductOptions of_zone(ProductOptions options) {
+  options.tolerance *= std::sqrt(0.5);
+  return options;
+}
+
+ProductPlan with_inner(ProductPlan outer, const ProductPlan& inner) {
+  outer.estimated_error = std::hypot(outer.estimated_error, inner.estimated_error);
+  outer.kernel_bytes += inner.kernel_bytes;
+  outer.inner = {inner};
+  return outer;
+}
+
+/// Large tiles about the axis and small ones at the rim, if that is cheaper than another plan.
+void try_zones(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options,
+               std::optional<ProductPlan>& best) {
+  constexpr std::array parts_of_rim{0.94, 0.85};
+  const SensorGeometry& cells = grid.cells;
+  const double corner = std::hypot(cells.columns / 2.0 - grid.margin, cells.rows / 2.0 - grid.margin),
+               rim = std::min(corner, psfs.rim_mm() / (psfs.cell_um() * mm_per_um));
+  for (const double part : parts_of_rim) {
+    const double radius = part * rim;
+    if (radius <= ProductPlan::fade) continue;
+    const SourceGrid inside = inner_zone(grid, radius), outside = outer_zone(grid, radius);
+    LayoutErrors errors_inside(psfs, inside), errors_outside(psfs, outside);
+    const auto inner = cheapest(psfs, inside, of_zone(options), errors_inside);
+    if (!inner || (best && inner->total_ns() >= best->total_ns())) continue;
+    const auto outer = cheapest(psfs, outside, of_zone(options), errors_outside);
+    if (!outer || (best && inner->total_ns() + outer->total_ns() >= best->total_ns())) continue;
+    best = with_inner(*outer, *inner);
+  }
+}
+
+/// A plan of zones for a neighbouring band or layer, if both zones' serve.
+std::optional<ProductPlan> kept_zones(const ProductPlan& hint, const PsfField& psfs, const SourceGrid& grid,
+                                      const ProductOptions& options) {
+  const double radius = hint.inner.front().zone.to;
+  const SourceGrid inside = inner_zone(grid, radius), outside = outer_zone(grid, radius);
+  LayoutErrors errors_inside(psfs, inside), errors_outside(psfs, outside);
+  const auto inner = kept_plan(hint.inner.front(), psfs, inside, of_zone(options), errors_inside);
+  if (!inner) return {};
+  const auto outer = kept_plan(hint, psfs, outside, of_zone(options), errors_outside);
+  if (!outer) return {};
+  return with_inner(*outer, *inner);
+}
+
+}  // namespace
+
+std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& grid,
+                                        const ProductOptions& options,
+                                        const std::optional<ProductPlan>& hint) {
+  options.validate();
+  LayoutErrors errors(psfs, grid);
+  if (hint)
+    if (std::optional<ProductPlan> plan = hint->inner.empty() ? kept_plan(*hint, psfs, grid, options, errors)
+                                                              : kept_zones(*hint, psfs, grid, options))
+      return plan;
+  std::optional<ProductPlan> best = cheapest(psfs, grid, options, errors);
+  // To look at zones takes as long as that.
+  constexpr double worth_zones_ns = 0.5e9;
+  const bool free = options.tile == 0 && options.nodes == 0 && !options.direct;
+  if (free && (!best || best->total_ns() > worth_zones_ns)) try_zones(psfs, grid, options, best);
+  return best;
+}
+
 ProductPlan plan_blended(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options) {
   options.validate();
   ProductPlan plan;
   plan.tile = std::max(TileTransform::largest, psfs.radius());
+  LayoutErrors errors(psfs, grid);
   while (true) {
     const double limit = caution * options.tolerance;
-    plan.estimated_error =
-        kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit).rms;
+    plan.estimated_error = errors.at_places(plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit).rms;
     if (plan.estimated_error <= limit || plan.tile == 1) return plan;
     plan.tile /= 2;
   }

@@ -7,16 +7,19 @@
 #include <petzval/sensor/sensor.h>
 
 #include <optional>
+#include <vector>
 
 namespace petzval {
 
 /// Tiles, nodes and transforms of a product convolution.
 struct ProductPlan {
-  int tile = 0;         ///< cells along a side
-  int nodes = 2;        ///< along a side of a tile
-  int transform = 0;    ///< cells along a side; tile + 2 · kernel radius fit into it
-  bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
-  CellRing exact = {};  ///< of source cells with kernels of their own
+  int tile = 0;                         ///< cells along a side
+  int nodes = 2;                        ///< along a side of a tile
+  int transform = 0;                    ///< cells along a side; tile + 2 · kernel radius fit into it
+  bool direct = false;                  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
+  CellRing exact = {};                  ///< of source cells with kernels of their own
+  CellRing zone = whole_frame;          ///< of source cells that the tiles serve
+  std::vector<ProductPlan> inner = {};  ///< none, or one with larger tiles for the cells nearer to the axis
   /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
@@ -32,8 +35,14 @@ struct ProductPlan {
   int rows_held = 0;        ///< rows of tiles whose transfer functions are held at a time; 0: all
 
   /// The PSFs are still wanted when the blur is made.
-  bool wants_psfs() const { return !exact.empty() || rows_held != 0; }
-  double total_ns() const { return filter_ns + kernels_ns + exact_ns; }
+  bool wants_psfs() const {
+    return !exact.empty() || rows_held != 0 || (!inner.empty() && inner.front().wants_psfs());
+  }
+  double total_ns() const {
+    return filter_ns + kernels_ns + exact_ns + (inner.empty() ? 0 : inner.front().total_ns());
+  }
+  /// Cells within which light passes from the tiles of one zone to those of the next.
+  static constexpr double fade = 16;
 };
 
 struct ProductOptions {

@@ -186,14 +186,18 @@ struct Mixture {
     constexpr int room = 3;
     half = 0;
     for (const WeightedPsf& part : psfs) half = std::max(half, part.psf->half() + room);
-    coefficients.assign(static_cast<std::size_t>(size()) * static_cast<std::size_t>(size()), 0);
-    for (const WeightedPsf& part : psfs) {
-      const int beyond = half - part.psf->half(), of_part = 2 * part.psf->half() + 1;
-      const auto weight = static_cast<float>(part.weight);
-      for (int i = 0; i < of_part; ++i) {
-        const float* in = part.psf->coefficients().data() + static_cast<std::ptrdiff_t>(i) * of_part;
-        float* out = coefficients.data() + static_cast<std::ptrdiff_t>(i + beyond) * size() + beyond;
-        for (int j = 0; j < of_part; ++j) out[j] += weight * in[j];
+    coefficients.resize(static_cast<std::size_t>(size()) * static_cast<std::size_t>(size()));
+    // Row by row, so that a row stays in the nearest cache until all parts are added.
+    for (int row = -half; row <= half; ++row) {
+      float* out = coefficients.data() + static_cast<std::ptrdiff_t>(row + half) * size();
+      std::fill_n(out, size(), 0.0F);
+      for (const WeightedPsf& part : psfs) {
+        const int of_part = part.psf->half();
+        if (std::abs(row) > of_part) continue;
+        const auto weight = static_cast<float>(part.weight);
+        const float* in = part.psf->coefficients().data() +
+                          static_cast<std::ptrdiff_t>(row + of_part) * (2 * of_part + 1) + of_part;
+        for (int j = -of_part; j <= of_part; ++j) out[j + half] += weight * in[j];
       }
     }
   }

@@ -136,13 +136,16 @@ TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, c
       tiles_across_((across_.count() + plan.tile - 1) / plan.tile),
       tiles_down_((down_.count() + plan.tile - 1) / plan.tile),
       nodes_(lobatto_nodes(plan.nodes)),
+      needed_(TilesInZone(plan.zone, across_, down_, plan.tile).nodes(phases())),
       sets_(std::move(memory)) {
   const std::vector<float> weights = cell_weights(nodes_, plan.tile);
   weights_.assign(weights.begin(), weights.end());
   sets_.resize(kernel_set_count(psfs.symmetry()));
+  slots_ = {0};
+  for (const char needed : needed_) slots_.push_back(slots_.back() + (needed != 0 ? 1 : 0));
   if (plan_.rows_held != 0) return;
   for (std::size_t set = 0; set < sets_.size(); ++set) {
-    sets_[set].resize(nodes_across() * nodes_down() * transform_.otf_floats());
+    sets_[set].resize(slots_.back() * transform_.otf_floats());
     make_otfs(node_kernels(psfs, set), 0, nodes_down(), sets_[set].data());
   }
 }
@@ -167,7 +170,8 @@ NodeKernels TransformBlur::node_kernels(const PsfField& psfs, std::size_t set) c
           places,
           nodes_across(),
           nodes_down(),
-          quadrants_of_set(set, sets_.size()).front()};
+          quadrants_of_set(set, sets_.size()).front(),
+          needed_};
 }
 
 void TransformBlur::make_otfs(const NodeKernels& kernels, std::size_t first_row, std::size_t end_row,
@@ -175,34 +179,38 @@ void TransformBlur::make_otfs(const NodeKernels& kernels, std::size_t first_row,
   const int size = 2 * radius_ + 1;
   const auto weights = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   const double scale = 1 / (double(plan_.transform) * plan_.transform);  // transforms are not normalised
-  const std::size_t first = first_row * nodes_across(), count = (end_row - first_row) * nodes_across(),
-                    floats = transform_.otf_floats();
+  const std::size_t first = first_row * nodes_across(), floats = transform_.otf_floats();
+  std::vector<std::size_t> wanted;
+  for (std::size_t node = first; node < end_row * nodes_across(); ++node)
+    if (needed_[node] != 0) wanted.push_back(node);
   // Two kernels share a transform; a task has several of those, and one workspace.
   constexpr std::size_t kernels_a_task = 8;
-  parallel_for((count + kernels_a_task - 1) / kernels_a_task, [&](std::size_t task) {
+  parallel_for((wanted.size() + kernels_a_task - 1) / kernels_a_task, [&](std::size_t task) {
     AlignedVector<float> pair(2 * weights), workspace;
-    const std::size_t end = std::min(count, (task + 1) * kernels_a_task);
-    for (std::size_t node = task * kernels_a_task; node < end; node += 2) {
-      const bool both = node + 1 < end;
-      for (std::size_t i = 0; i < (both ? 2U : 1U); ++i)
-        kernels.lay((first + node + i) % nodes_across(), (first + node + i) / nodes_across(), scale,
-                    pair.data() + i * weights);
-      float* otf = out + node * floats;
+    const std::size_t end = std::min(wanted.size(), (task + 1) * kernels_a_task);
+    for (std::size_t at = task * kernels_a_task; at < end; at += 2) {
+      const bool both = at + 1 < end;
+      for (std::size_t i = 0; i < (both ? 2U : 1U); ++i) {
+        const std::size_t node = wanted[at + i];
+        kernels.lay(node % nodes_across(), node / nodes_across(), scale, pair.data() + i * weights);
+      }
       transform_kernels(transform_, {pair.data(), both ? pair.data() + weights : nullptr}, size,
-                        {otf, both ? otf + floats : nullptr}, workspace);
+                        {out + at * floats, both ? out + (at + 1) * floats : nullptr}, workspace);
     }
   });
 }
 
 TileMixture TransformBlur::mixture_of(const Strip& strip, std::size_t set, int tile) const {
   TileMixture mixture{plan_.tile, plan_.tile + 2 * radius_, plan_.nodes, weights_.data(), {}};
-  const auto row = static_cast<std::size_t>(tile / tiles_across_ - strip.first_row),
+  const auto row = static_cast<std::size_t>(tile / tiles_across_),
              column = static_cast<std::size_t>(tile % tiles_across_);
+  const std::size_t before = slots_before(phases() * static_cast<std::size_t>(strip.first_row));
   for (std::size_t b = 0; b <= phases(); ++b)
     for (std::size_t a = 0; a <= phases(); ++a)
-      mixture.otfs.push_back((*strip.sets)[set].data() +
-                             ((phases() * row + b) * nodes_across() + phases() * column + a) *
-                                 transform_.otf_floats());
+      mixture.otfs.push_back(
+          (*strip.sets)[set].data() +
+          (slots_[(phases() * row + b) * nodes_across() + phases() * column + a] - before) *
+              transform_.otf_floats());
   return mixture;
 }
 
@@ -265,19 +273,21 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
 }
 
 void TransformBlur::blur_strip_by_strip(const CellPlane& source, int margin, CellPlane& result) const {
-  const std::size_t row_floats = nodes_across() * transform_.otf_floats();
+  const std::size_t floats = transform_.otf_floats();
   KernelSets held(sets_.size());
   for (std::size_t set = 0; set < sets_.size(); ++set) {
     const NodeKernels kernels = node_kernels(*psfs_, set);
     KernelSet& otfs = held[set];
     for (int first = 0; first < tiles_down_; first += plan_.rows_held) {
       const Strip strip{first, std::min(tiles_down_, first + plan_.rows_held), &held};
-      const std::size_t rows = phases() * static_cast<std::size_t>(strip.end_row - first) + 1;
+      const std::size_t first_row = phases() * static_cast<std::size_t>(first),
+                        end_row = phases() * static_cast<std::size_t>(strip.end_row) + 1;
       // The last row of nodes is the first of the next strip.
+      const std::size_t row_floats = (slots_before(first_row + 1) - slots_before(first_row)) * floats;
       if (first > 0) std::copy_n(otfs.data() + otfs.size() - row_floats, row_floats, otfs.data());
-      otfs.resize(rows * row_floats);
-      const std::size_t made = first == 0 ? 0 : 1, first_node = phases() * static_cast<std::size_t>(first);
-      make_otfs(kernels, first_node + made, first_node + rows, otfs.data() + made * row_floats);
+      otfs.resize((slots_before(end_row) - slots_before(first_row)) * floats);
+      const std::size_t made = first == 0 ? 0 : 1;
+      make_otfs(kernels, first_row + made, end_row, otfs.data() + (made == 0 ? 0 : row_floats));
       blur_runs(runs(set, set + 1, strip), strip, source, margin, result);
     }
     otfs = {};

@@ -21,7 +21,8 @@ namespace petzval {
 /// (ProductPlan::rows_held) are made for some rows of tiles at a time, whenever light is blurred.
 class TransformBlur {
  public:
-  /// Transfer functions of kernels that are shared by mirrored places: [node down][node across].
+  /// Transfer functions of kernels that are shared by mirrored places, of the nodes that are needed: [node
+  /// down][node across].
   using KernelSet = UnsetVector<float, AlignedAllocator<float>>;
   /// As many as kernel_set_count() says.
   using KernelSets = std::vector<KernelSet>;
@@ -64,9 +65,11 @@ class TransformBlur {
   void blur_strip_by_strip(const CellPlane& source, int margin, CellPlane& result) const;
   std::size_t nodes_across() const { return phases() * static_cast<std::size_t>(tiles_across_) + 1; }
   std::size_t nodes_down() const { return phases() * static_cast<std::size_t>(tiles_down_) + 1; }
+  /// The needed nodes before a row of nodes.
+  std::size_t slots_before(std::size_t row) const { return slots_[row * nodes_across()]; }
   std::size_t phases() const { return nodes_.size() - 1; }
   NodeKernels node_kernels(const PsfField& psfs, std::size_t set) const;
-  /// Writes the transfer functions of rows of nodes.
+  /// Writes the transfer functions of rows of nodes, where they are needed.
   void make_otfs(const NodeKernels& kernels, std::size_t first_row, std::size_t end_row, float* out) const;
   TileMixture mixture_of(const Strip& strip, std::size_t set, int tile) const;
   void add(const float* blurred, const QuadrantPair& pair, int tile, int margin, CellPlane& result) const;
@@ -78,7 +81,9 @@ class TransformBlur {
   TileTransform transform_;
   int radius_, tiles_across_, tiles_down_;
   std::vector<double> nodes_;
-  AlignedVector<float> weights_;  ///< [node][cell along a side]
+  std::vector<char> needed_;        ///< nodes of tiles in the plan's zone: [down][across]
+  std::vector<std::size_t> slots_;  ///< how many of those come before each node; one more for all
+  AlignedVector<float> weights_;    ///< [node][cell along a side]
   KernelSets sets_;
 };
 

@@ -23,13 +23,18 @@ std::string product_text(const ImagingOptions& options, const ImagingReport& rep
                               ? ""
                               : fmt::format("every cell its own PSF {:.0f} to {:.0f} cells from the axis, ",
                                             plan.exact.from, plan.exact.to);
+  const std::string zones =
+      plan.inner.empty()
+          ? ""
+          : fmt::format("{0} x {0} nodes in tiles of {1} x {1} within {2:.0f} cells of the axis, ",
+                        plan.inner.front().nodes, plan.inner.front().tile, plan.inner.front().zone.to);
   const std::string far = report.tail_pixels == 0
                               ? ""
                               : fmt::format("light beyond {} pixels on pixels {} times as wide, ",
                                             report.tail_pixels, tail_coarseness(report.tail_pixels));
   const std::string error = fmt::format(
-      "{} x {} cells a pixel, {}{}estimated error {:.1e} of {:g}; {} interpolated", report.cells_per_pixel,
-      report.cells_per_pixel, rim, far, report.estimated_error(), options.product.tolerance, between);
+      "{} x {} cells a pixel, {}{}{}estimated error {:.1e} of {:g}; {} interpolated", report.cells_per_pixel,
+      report.cells_per_pixel, zones, rim, far, report.estimated_error(), options.product.tolerance, between);
   if (plan.direct)
     return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,
                        plan.tile, error);
