@@ -5,7 +5,10 @@
 #include <petzval/base/parallel.h>
 
 #include <atomic>
+#include <chrono>
+#include <functional>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace petzval {
@@ -80,6 +83,48 @@ TEST(ParallelStages, HandOnExceptionsOfAnyStage) {
     EXPECT_THROW(parallel_stages(20, 3, {stage(0), stage(1), stage(2)}), InputError) << failing;
   }
 }
+
+using InnerLoop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
+
+class LoopsInLoops : public ::testing::TestWithParam<InnerLoop> {};
+
+TEST_P(LoopsInLoops, AreDoneWholeOrThrow) {
+  const ThreadLimit two(2);
+  constexpr std::size_t items = 400;
+  int given_up = 0;
+  for (int turn = 0; turn < 20; ++turn) {
+    std::atomic<bool> inside = false;
+    std::atomic<std::size_t> made = 0;
+    bool returned = false;
+    const auto pause = [] { std::this_thread::sleep_for(std::chrono::microseconds(50)); };
+    EXPECT_THROW(parallel_tasks(2,
+                                [&](std::size_t i) {
+                                  if (i == 0) {
+                                    // Until the other has begun its loop, if another thread does it at all.
+                                    for (int k = 0; k < 1000 && !inside; ++k) pause();
+                                    throw InputError("one of them fails");
+                                  }
+                                  GetParam()(items, [&](std::size_t) {
+                                    inside = true;
+                                    pause();
+                                    ++made;
+                                  });
+                                  returned = true;
+                                }),
+                 InputError);
+    EXPECT_TRUE(!returned || made == items) << made << " of " << items;
+    given_up += inside && made < items ? 1 : 0;
+  }
+  EXPECT_GT(given_up, 0) << "loops of items that nobody needs any more";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LoopsInLoops,
+                         ::testing::Values(InnerLoop(parallel_for), InnerLoop(parallel_tasks),
+                                           InnerLoop([](std::size_t count, const auto& body) {
+                                             const auto nothing = [](std::size_t, std::size_t) {};
+                                             const auto work = [&](std::size_t i, std::size_t) { body(i); };
+                                             parallel_stages(count, 2, {nothing, work, nothing});
+                                           })));
 
 TEST(ThreadLimit, HoldsWhileItLives) {
   const int before = thread_count();

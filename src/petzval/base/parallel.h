@@ -9,9 +9,9 @@
 namespace petzval {
 
 /// Calls `body(i)` once for each i in [0, count), on any thread, in any order. Bodies must write to places of
-/// their own: sums over i are made afterwards, in order, so that the bytes do not depend on the schedule.
-/// An exception of a body ends the loop and is rethrown. Before every item the context that the loop runs in
-/// is asked whether to go on (base/context.h). \throws Cancelled.
+/// their own: sums are made afterwards, in order, so that bytes do not depend on the schedule. An exception
+/// of a body ends the loop and is rethrown; loops within other bodies of it then throw, too. Before every
+/// item the context that the loop runs in is asked whether to go on (base/context.h). \throws Cancelled.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// The same for bodies of a millisecond or more: they are handed out one by one. parallel_for() hands out
