@@ -79,6 +79,17 @@ TEST(Context, StopsBeforeAnythingIsDone) {
   EXPECT_FALSE(begun);
 }
 
+TEST(Context, LeavesWorkThatIsDoneWhenStopComesTooLate) {
+  bool wanted = true;
+  Context context;
+  context.progress = [&](double, const std::string&) { return wanted; };
+  // As if a file were in its place: to say that nothing was done would be wrong.
+  EXPECT_NO_THROW(run_within(context, [&](const ProgressCallback&) {
+    wanted = false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));  // so that it would be asked
+  }));
+}
+
 TEST(Context, AnOuterContextStopsTheInnerOne) {
   std::atomic<int> done = 0;
   Context outer;

@@ -85,7 +85,6 @@ void run_within(const Context& context, const std::function<void(const ProgressC
     const ListenerScope scope(&listener);
     listener.check();
     work([&](double fraction, const std::string& what) { listener.tell(fraction, what); });
-    listener.check();
   };
   if (context.threads <= 0) return run();
   tbb::task_arena arena(context.threads);

@@ -44,7 +44,7 @@ void send_note(const Context& context, const std::string& note);
 /// Does `work` on at most `context.threads` threads. While it runs, every parallel loop in it asks the
 /// context's callback whether to go on; work that is neither a loop nor short calls check_stop(). `progress`
 /// tells the callback how far the work is. Contexts nest: the inner one's callback is asked, then the outer
-/// one's. \throws Cancelled when one says stop, and whatever `work` throws.
+/// one's. \throws Cancelled when one says stop before the work is done, and whatever `work` throws.
 void run_within(const Context& context, const std::function<void(const ProgressCallback& progress)>& work);
 
 /// The same for work with a result.

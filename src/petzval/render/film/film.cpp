@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/render/film/film.h>
 
 #include <algorithm>
@@ -17,6 +18,18 @@ template <typename AnyFilm>
 auto sums_of(AnyFilm& film) {
   return std::array{&film.light, &film.of_sources, &film.half,   &film.half_first, &film.lamps,
                     &film.met,   &film.depth,      &film.normal, &film.albedo};
+}
+
+/// Sums of nothing. A large film takes seconds to be laid out: in pieces, so that a stop is heard of.
+std::vector<ExactSum> empty_sums(std::size_t count) {
+  constexpr std::size_t piece = std::size_t{1} << 22;
+  std::vector<ExactSum> sums;
+  sums.reserve(count);
+  while (sums.size() < count) {
+    check_stop();
+    sums.resize(std::min(count, sums.size() + piece));
+  }
+  return sums;
 }
 
 /// Row by row, where a tile's sums stand in those of a window that holds it.
@@ -42,19 +55,18 @@ Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces
         fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
                     "pixels or bands would fit",
                     pixels.columns(), pixels.rows(), bands, values * sizeof(ExactSum) / 1073741824));
-  light.assign(pixels.size() * static_cast<std::size_t>(bands), ExactSum());
-  of_sources.assign(sources * light.size(), ExactSum());
-  arriving.assign(static_cast<std::size_t>(bands), ExactSum());
-  lamps.assign(pixels.size(), ExactSum());
-  if (kept_half == Half::sum_of_bands) half.assign(pixels.size(), ExactSum());
-  if (kept_half == Half::all) half = light;
+  light = empty_sums(pixels.size() * static_cast<std::size_t>(bands));
+  of_sources = empty_sums(sources * light.size());
+  arriving = empty_sums(static_cast<std::size_t>(bands));
+  lamps = empty_sums(pixels.size());
+  if (kept_half != Half::none) half = empty_sums(kept_half == Half::all ? light.size() : pixels.size());
   if (!first_surfaces) return;
-  met.assign(pixels.size() * static_cast<std::size_t>(groups), ExactSum());
-  depth.assign(pixels.size(), ExactSum());
-  normal.assign(3 * pixels.size(), ExactSum());
-  albedo.assign(light.size(), ExactSum());
+  met = empty_sums(pixels.size() * static_cast<std::size_t>(groups));
+  depth = empty_sums(pixels.size());
+  normal = empty_sums(3 * pixels.size());
+  albedo = empty_sums(light.size());
   if (kept_half == Half::all)
-    half_first.assign(met.size() + depth.size() + normal.size() + albedo.size(), ExactSum());
+    half_first = empty_sums(met.size() + depth.size() + normal.size() + albedo.size());
 }
 
 Film Film::part(const PixelWindow& tile) const {
