@@ -4,6 +4,7 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/transfer_fit.h>
 #include <petzval/analysis/wavefront.h>
+#include <petzval/base/context.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/first_order.h>
@@ -25,6 +26,13 @@ Lens stopped_down() {
 const TransferFit& fit_of_double_gauss() {
   static const TransferFit fit = fit_transfer(stopped_down());
   return fit;
+}
+
+TEST(TransferFit, EndsWhenTheContextSaysStop) {
+  int questions = 0;
+  Context context;
+  context.progress = [&](double, const std::string&) { return ++questions < 2; };
+  EXPECT_THROW(run_within(context, [](const ProgressCallback&) { fit_transfer(stopped_down()); }), Cancelled);
 }
 
 TEST(TransferFit, KeepsItsPromiseOnOtherRays) {
