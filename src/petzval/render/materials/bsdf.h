@@ -125,8 +125,10 @@ class Bsdf {
   const MeasuredBrdf* measured_ = nullptr;
   int group_ = 0;  ///< of wavelengths, of what is measured
   const Sheen* sheen_ = nullptr;
-  Lanes veil_colour_ = Lanes::all(0);  ///< of the sheen, or the albedo of what is in a turbid coat
-  double veil_shape_ = 1;              ///< alpha of the sheen, or g of what is in a turbid coat
+  Lanes sheen_colour_ = Lanes::all(0);
+  double sheen_alpha_ = 1;
+  Lanes turbid_albedo_ = Lanes::all(0);  ///< of what scatters in a turbid coat
+  double turbid_g_ = 0;
 };
 
 /// A direction over the hemisphere with density cos/π, from a point of the unit square (Shirley & Chiu 1997).

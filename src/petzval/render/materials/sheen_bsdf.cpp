@@ -7,27 +7,27 @@ namespace petzval::render {
 
 void Bsdf::cover(const Sheen& sheen, const Lanes& colour, double alpha) {
   sheen_ = &sheen;
-  veil_colour_ = colour;
-  veil_shape_ = alpha;
+  sheen_colour_ = colour;
+  sheen_alpha_ = alpha;
 }
 
 /// By the colour's largest part, so that what is below keeps its own.
 double Bsdf::left_by_sheen(Vector3 wo, Vector3 wi) const {
   const double taken =
-      std::max(sheen_->albedo(std::abs(wo.z), veil_shape_), sheen_->albedo(std::abs(wi.z), veil_shape_));
-  return 1 - static_cast<double>(veil_colour_.largest()) * taken;
+      std::max(sheen_->albedo(std::abs(wo.z), sheen_alpha_), sheen_->albedo(std::abs(wi.z), sheen_alpha_));
+  return 1 - static_cast<double>(sheen_colour_.largest()) * taken;
 }
 
 /// How often the fibres are followed.
 double Bsdf::sheen_share(Vector3 wo) const {
-  const double taken = sheen_->albedo(std::abs(wo.z), veil_shape_);
-  return std::clamp(static_cast<double>(veil_colour_.largest()) * taken, 0.1, 0.9);
+  const double taken = sheen_->albedo(std::abs(wo.z), sheen_alpha_);
+  return std::clamp(static_cast<double>(sheen_colour_.largest()) * taken, 0.1, 0.9);
 }
 
 Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
   if (!sheen_) return bare_value(wo, wi);
   if (!(wo.z * wi.z > 0)) return Lanes::all(0);
-  return left_by_sheen(wo, wi) * bare_value(wo, wi) + sheen_->value(wo, wi, veil_shape_) * veil_colour_;
+  return left_by_sheen(wo, wi) * bare_value(wo, wi) + sheen_->value(wo, wi, sheen_alpha_) * sheen_colour_;
 }
 
 double Bsdf::pdf(Vector3 wo, Vector3 wi) const {
@@ -63,7 +63,7 @@ std::optional<BsdfSample> Bsdf::sample(Vector3 wo, double choice, double u, doub
 Lanes Bsdf::albedo() const {
   if (!sheen_) return bare_albedo();
   const Vector3 facing{0, 0, 1};
-  return left_by_sheen(facing, facing) * bare_albedo() + sheen_->albedo(1, veil_shape_) * veil_colour_;
+  return left_by_sheen(facing, facing) * bare_albedo() + sheen_->albedo(1, sheen_alpha_) * sheen_colour_;
 }
 
 }  // namespace petzval::render

@@ -16,8 +16,8 @@ constexpr int most_events = 10000;
 void Bsdf::make_turbid(const Lanes& albedo, double g) {
   turbid_ = true;
   mirror_ = false;
-  veil_colour_ = albedo;
-  veil_shape_ = g;
+  turbid_albedo_ = albedo;
+  turbid_g_ = g;
 }
 
 /// Where a walk is in the coat and where it goes to.
@@ -42,10 +42,10 @@ class Bsdf::TurbidWalk {
     const double u = numbers_.next(), v = numbers_.next();
     if (place == Place::base) return layers_.base().sample(-w, numbers_.next(), u, v);
     BsdfSample sample;
-    sample.wi = sample_henyey_greenstein(w, whole_.veil_shape_, u, v);
+    sample.wi = sample_henyey_greenstein(w, whole_.turbid_g_, u, v);
     if (sample.wi.z == 0) return {};
-    sample.pdf = henyey_greenstein(dot(w, sample.wi), whole_.veil_shape_);
-    sample.weight = whole_.veil_colour_;
+    sample.pdf = henyey_greenstein(dot(w, sample.wi), whole_.turbid_g_);
+    sample.weight = whole_.turbid_albedo_;
     return sample;
   }
   /// Of light that came along `in` through the coat, where that and the base are mirrors: what the medium
@@ -60,16 +60,16 @@ class Bsdf::TurbidWalk {
       const double each = static_cast<double>(base);
       return (up + down * each) / (cos * (1 - back * each));
     });
-    return orders * whole_.veil_colour_;
+    return orders * whole_.turbid_albedo_;
   }
   double density(Place place, Vector3 w, Vector3 to) const {
     return place == Place::base ? layers_.base().pdf(-w, to)
-                                : henyey_greenstein(dot(w, to), whole_.veil_shape_);
+                                : henyey_greenstein(dot(w, to), whole_.turbid_g_);
   }
   /// Of light that goes to `to`, over the cosine that Crossing::weight has.
   Lanes scattered(Place place, Vector3 w, Vector3 to) const {
     if (place == Place::base) return layers_.base().value(-w, to);
-    return density(place, w, to) / std::abs(to.z) * whole_.veil_colour_;
+    return density(place, w, to) / std::abs(to.z) * whole_.turbid_albedo_;
   }
   /// Whether the walk goes on, at random for what is weak.
   bool goes_on(int event, Lanes& left) {

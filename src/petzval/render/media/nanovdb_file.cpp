@@ -20,7 +20,7 @@ constexpr double most_voxels = 0x1p28;
 /// Deflate makes nothing smaller than by a thousand.
 constexpr std::uint64_t most_inflated = 1032;
 
-/// NanovdbBytes, each access to which is checked.
+/// Bytes, each access to which is checked.
 class NanovdbBytes {
  public:
   NanovdbBytes(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
