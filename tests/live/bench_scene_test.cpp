@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spectral files before the bench, and the finest picture.
+// Spectral files before the bench, and the finest pictures.
 #include <petzval/base/data_directory.h>
 #include <petzval/live/bench_scene.h>
 #include <petzval/live/bench_sensor.h>
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -167,6 +168,44 @@ TEST(BenchPicture, EndsWithAllPixelsAndBandsUnlessSomethingNewerComes) {
   page.send(bench_state(3));
   for (json message = page.next(); message["kind"] != "idle"; message = page.next())
     EXPECT_FALSE(message["kind"] == "picture" && message["id"] == 2) << message["quality"];
+}
+
+TEST(BenchRender, EndsWithAllPixelsAndBandsOnceTheyAreAsQuiet) {
+  FewPixels few;
+  LivePage page(*few.server);
+  json state = state_before("spheres");
+  state["camera"]["focus"] = "1m";
+  page.send(state);
+  json full;
+  std::array<double, 3> of_full{}, of_finest{};
+  const auto mean_colour = [&] {
+    std::array<double, 3> mean{};
+    for (std::size_t i = 0; i < page.bytes.size(); ++i)
+      if (i % 4 < 3)
+        mean[i % 4] +=
+            4.0 / static_cast<double>(page.bytes.size()) * static_cast<unsigned char>(page.bytes[i]);
+    return mean;
+  };
+  json finest = page.next("picture");
+  EXPECT_EQ(finest["quality"], "preview");
+  while (finest["quality"] != "finest") {
+    finest = page.next("picture");
+    if (!full.is_null()) {
+      // Both have as many pixels: with fewer rays the picture would be noisier than the one before.
+      EXPECT_GE(finest["samples"], full["samples"]);
+    }
+    if (finest["quality"] == "full") full = finest, of_full = mean_colour();
+  }
+  of_finest = mean_colour();
+  EXPECT_EQ(full["bands"], 8);
+  EXPECT_EQ(full["samples"], 128);
+  EXPECT_EQ(finest["bands"], 31);
+  EXPECT_EQ(finest["samples"], 128);
+  EXPECT_EQ(finest["columns"], 160);
+  EXPECT_EQ(page.next("idle")["id"], 1);
+  // The same scene in the same light, in 8 bands and in 31: a few levels of 255.
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(of_finest[channel], of_full[channel], 5) << channel;
 }
 
 TEST(BinnedSensor, HasAtMostSoManyPixels) {

@@ -292,7 +292,7 @@ void Bench::Impl::show(const BenchState& state) {
   if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
     plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads, true});
-    if (picture("picture", PictureQuality::full) && !solid) picture("finest", PictureQuality::finest);
+    if (picture("picture", PictureQuality::full)) picture("finest", PictureQuality::finest);
   }
   if (!plots->wait(stop)) throw Cancelled();
 }

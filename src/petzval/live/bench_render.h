@@ -10,7 +10,7 @@
 
 namespace petzval {
 
-/// The renderings of one bench. A full one is sent again and again while its samples are taken.
+/// The renderings of one bench. Full and finest ones are sent again and again while their samples are taken.
 class BenchRender {
  public:
   /// \param camera  with the lens as it was given, without a sensor.
@@ -20,7 +20,7 @@ class BenchRender {
   /// From the sensor, along the axis, to what the last picture shows at a place (x right, y up, on the
   /// sensor [mm]). \throws InputError if there is none, or nothing is seen there.
   double distance_m(const std::array<double, 2>& place_mm) const;
-  /// Files of the last picture of full quality. \throws InputError if there is none yet.
+  /// Files of the last picture of full quality, or of the finest. \throws InputError if there is none yet.
   void write(const std::string& path, const Context& context) const;
 
  private:
@@ -31,8 +31,14 @@ class BenchRender {
     std::optional<SpectralImage> light = {};
     ShownSensor sensor = {};
     OutputOptions outputs = {};
+
+    bool is_shown() const { return light && !shown_key.empty(); }
+    double pixels() const {
+      const SensorGeometry& frame = sensor.binned.sensor.geometry;
+      return double{1} * frame.columns * frame.rows;
+    }
   };
-  Shot preview_, full_;
+  Shot preview_, full_, finest_;
 };
 
 }  // namespace petzval
