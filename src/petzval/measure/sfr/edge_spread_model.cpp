@@ -260,15 +260,16 @@ double EdgeSpreadModel::unknowns() const {
   return trace_of_product(factor_.inverse(), data_normal_);
 }
 
-EdgeSpreadModel::Projection::Projection(const EdgeSpreadModel& model)
-    : model_(model),
-      sums_(BorderedBand::Block::Zero(model.padded() + model.basis_.fixed(), BorderedBand::lanes)) {}
+template <int functions>
+EdgeSpreadModel::Projection<functions>::Projection(const EdgeSpreadModel& model)
+    : model_(model), sums_(decltype(sums_)::Zero(model.padded() + model.basis_.fixed(), functions)) {}
 
-void EdgeSpreadModel::Projection::add(std::size_t point,
-                                      const std::array<double, BorderedBand::lanes>& values) {
+template <int functions>
+void EdgeSpreadModel::Projection<functions>::add(std::size_t point,
+                                                 const std::array<double, functions>& values) {
   const Row& row = model_.rows_[point];
   const auto add_to = [&](int unknown, double weight) {
-    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * BorderedBand::lanes;
+    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * functions;
     for (std::size_t k = 0; k < values.size(); ++k) sum[k] += weight * values[k];
   };
   for (int p = 0; p < support && row.first >= 0; ++p)
@@ -277,15 +278,21 @@ void EdgeSpreadModel::Projection::add(std::size_t point,
     add_to(model_.padded() + r, row.fixed[static_cast<std::size_t>(r)]);
 }
 
-EdgeSpreadModel::Projection::Matrix EdgeSpreadModel::Projection::taken() const {
-  BorderedBand::Block sums = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
-  sums.topRows(model_.basis_.splines) = sums_.middleRows(margin, model_.basis_.splines);
-  for (int r = 0; r < model_.basis_.fixed(); ++r)
-    sums.row(model_.basis_.place(r)) = sums_.row(model_.padded() + r);
-  BorderedBand::Block solved = sums;
+template <int functions>
+typename EdgeSpreadModel::Projection<functions>::Matrix EdgeSpreadModel::Projection<functions>::taken()
+    const {
+  const EdgeSpreadBasis& basis = model_.basis_;
+  BorderedBand::Columns<functions> sums = decltype(sums)::Zero(basis.size(), functions);
+  sums.topRows(basis.splines) = sums_.middleRows(margin, basis.splines);
+  for (int r = 0; r < basis.fixed(); ++r) sums.row(basis.place(r)) = sums_.row(model_.padded() + r);
+  BorderedBand::Columns<functions> solved = sums;
   model_.factor_.solve_in_place(solved);
   return sums.transpose() * solved;
 }
+
+template class EdgeSpreadModel::Projection<2>;
+template class EdgeSpreadModel::Projection<4>;
+template class EdgeSpreadModel::Projection<BorderedBand::lanes>;
 
 namespace {
 

@@ -91,18 +91,19 @@ class EdgeSpreadModel {
 
   /// What the profile can take of other functions of the points, so that these and it can be fitted together
   /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
+  template <int functions>  // 2, 4 or BorderedBand::lanes
   class Projection {
    public:
-    using Matrix = Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes>;
+    using Matrix = Eigen::Matrix<double, functions, functions>;
     explicit Projection(const EdgeSpreadModel& model);
     /// The values that the functions have at a point that the model was made from; 0 at those not named.
-    void add(std::size_t point, const std::array<double, BorderedBand::lanes>& values);
+    void add(std::size_t point, const std::array<double, functions>& values);
     /// Sums over the points of the products of what the profile takes.
     Matrix taken() const;
 
    private:
     const EdgeSpreadModel& model_;
-    BorderedBand::Block sums_;
+    BorderedBand::Columns<functions> sums_;
   };
 
   /// Standard deviations of |transform|: of noise of the given variances at the points, of their rounding,
