@@ -81,15 +81,15 @@ double BorderedCholesky::log_determinant() const {
   return 2 * sum;
 }
 
-template <int lanes>
+template <int count>
 void BorderedCholesky::solve_lanes(double* x) const {
   const int band = factor_.band(), border = factor_.border(), size = factor_.size();
-  double value[lanes];
+  double value[count];
   for (int j = 0; j < size; ++j) {
     const double* const l = factor_.column(j);
-    for (int k = 0; k < lanes; ++k) value[k] = x[j * lanes + k] *= per_diagonal_[static_cast<std::size_t>(j)];
+    for (int k = 0; k < count; ++k) value[k] = x[j * count + k] *= per_diagonal_[static_cast<std::size_t>(j)];
     const auto take = [&](double entry, int row) {
-      for (int k = 0; k < lanes; ++k) x[row * lanes + k] -= entry * value[k];
+      for (int k = 0; k < count; ++k) x[row * count + k] -= entry * value[k];
     };
     if (j < band)
       for (int p = 1; p <= below(factor_, j); ++p) take(l[p], j + p);
@@ -97,25 +97,25 @@ void BorderedCholesky::solve_lanes(double* x) const {
   }
   for (int j = size - 1; j >= 0; --j) {
     const double* const l = factor_.column(j);
-    for (int k = 0; k < lanes; ++k) value[k] = x[j * lanes + k];
+    for (int k = 0; k < count; ++k) value[k] = x[j * count + k];
     const auto take = [&](double entry, int row) {
-      for (int k = 0; k < lanes; ++k) value[k] -= entry * x[row * lanes + k];
+      for (int k = 0; k < count; ++k) value[k] -= entry * x[row * count + k];
     };
     for (int r = std::max(0, j - band + 1); r < border; ++r) take(l[corner + r], band + r);
     if (j < band)
       for (int p = below(factor_, j); p > 0; --p) take(l[p], j + p);
-    for (int k = 0; k < lanes; ++k) x[j * lanes + k] = value[k] * per_diagonal_[static_cast<std::size_t>(j)];
+    for (int k = 0; k < count; ++k) x[j * count + k] = value[k] * per_diagonal_[static_cast<std::size_t>(j)];
   }
 }
+
+template void BorderedCholesky::solve_lanes<2>(double*) const;
+template void BorderedCholesky::solve_lanes<4>(double*) const;
+template void BorderedCholesky::solve_lanes<BorderedBand::lanes>(double*) const;
 
 Eigen::VectorXd BorderedCholesky::solve(const Eigen::VectorXd& right) const {
   Eigen::VectorXd x = right;
   solve_lanes<1>(x.data());
   return x;
-}
-
-void BorderedCholesky::solve_in_place(BorderedBand::Block& right) const {
-  solve_lanes<BorderedBand::lanes>(right.data());
 }
 
 BorderedBand BorderedCholesky::inverse() const {

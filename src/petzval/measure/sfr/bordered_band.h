@@ -21,7 +21,9 @@ class BorderedBand {
 
   /// Several vectors side by side, for what is done with many of them.
   static constexpr int lanes = 8;
-  using Block = Eigen::Matrix<double, Eigen::Dynamic, lanes, Eigen::RowMajor>;
+  template <int count>
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, count, Eigen::RowMajor>;
+  using Block = Columns<lanes>;
 
   BorderedBand() = default;
   BorderedBand(int band, int border);
@@ -61,13 +63,17 @@ class BorderedCholesky {
   bool good() const { return good_; }
   double log_determinant() const;
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
-  void solve_in_place(BorderedBand::Block& right) const;
+  /// Of 2, 4 or `lanes` right sides.
+  template <int count>
+  void solve_in_place(BorderedBand::Columns<count>& right) const {
+    solve_lanes<count>(right.data());
+  }
   /// The inverse, where the matrix has entries (K. Takahashi, J. Fagan & M.-S. Chen, Proc. 8th PICA
   /// Conference, 1973).
   BorderedBand inverse() const;
 
  private:
-  template <int lanes>
+  template <int count>
   void solve_lanes(double* x) const;
 
   BorderedBand factor_;

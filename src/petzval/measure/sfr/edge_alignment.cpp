@@ -53,19 +53,18 @@ void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess) {
 
 namespace {
 
-constexpr std::size_t alignment_terms = BorderedBand::lanes;
-
 /// Normal equations of offset, direction and bends.
+template <int terms>
 struct AlignmentSums {
-  Eigen::Matrix<double, alignment_terms, alignment_terms> normal = decltype(normal)::Zero();
-  Eigen::Matrix<double, alignment_terms, 1> right = decltype(right)::Zero();
+  Eigen::Matrix<double, terms, terms> normal = decltype(normal)::Zero();
+  Eigen::Matrix<double, terms, 1> right = decltype(right)::Zero();
 
   /// \returns derivatives of the value at a point.
-  std::array<double, alignment_terms> add(const EdgeProfile& profile, std::size_t i, int order) {
+  std::array<double, terms> add(const EdgeProfile& profile, std::size_t i, int order) {
     const EdgePoint& point = profile.points[i];
     const EdgeSpreadModel::ValueAndSlope& at = profile.fitted[i];
     const double residual = point.value - profile.variation[i] - at.value;
-    std::array<double, alignment_terms> row{};
+    std::array<double, terms> row{};
     double power = -at.slope;
     for (int k = 0; k <= order; ++k, power *= point.along) {
       row[static_cast<std::size_t>(k)] = power;
@@ -77,9 +76,10 @@ struct AlignmentSums {
 };
 
 /// \param first  of the terms that are free.
-EdgeAlignment solved(const AlignmentSums& sums, int first, int order, double noise) {
+template <int terms>
+EdgeAlignment solved(const AlignmentSums<terms>& sums, int first, int order, double noise) {
   const int n = order + 1 - first;
-  Eigen::MatrixXd normal = sums.normal.block(first, first, n, n).selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd normal = sums.normal.block(first, first, n, n).template selfadjointView<Eigen::Lower>();
   const Eigen::VectorXd right = sums.right.segment(first, n);
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(normal);
   const Eigen::VectorXd change = ldlt.solve(right);
@@ -94,19 +94,13 @@ EdgeAlignment solved(const AlignmentSums& sums, int first, int order, double noi
   return result;
 }
 
-}  // namespace
+constexpr int most_terms = BorderedBand::lanes;
 
-EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise) {
-  AlignmentSums sums;
-  for (std::size_t i = 0; i < profile.points.size(); ++i)
-    if (std::abs(profile.points[i].distance) <= reach_px) sums.add(profile, i, order);
-  sums.normal.diagonal() *= 1 + 1e-12;
-  return solved(sums, 0, order, noise);
-}
-
-EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise) {
-  AlignmentSums sums;
-  EdgeSpreadModel::Projection projection(model);
+template <int terms>
+EdgeAlignment with_free_profile(const EdgeProfile& profile, const EdgeSpreadModel& model, int order,
+                                double noise) {
+  AlignmentSums<terms> sums;
+  EdgeSpreadModel::Projection<terms> projection(model);
   for (std::size_t i = 0; i < profile.points.size(); ++i)
     if (std::abs(profile.points[i].distance) <= model.core_px())
       projection.add(i, sums.add(profile, i, order));
@@ -115,6 +109,22 @@ EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model
   sums.normal -= projection.taken();
   sums.normal.diagonal() += 1e-9 * alone;
   return solved(sums, 1, order, noise);
+}
+
+}  // namespace
+
+EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise) {
+  AlignmentSums<most_terms> sums;
+  for (std::size_t i = 0; i < profile.points.size(); ++i)
+    if (std::abs(profile.points[i].distance) <= reach_px) sums.add(profile, i, order);
+  sums.normal.diagonal() *= 1 + 1e-12;
+  return solved(sums, 0, order, noise);
+}
+
+EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise) {
+  if (order < 2) return with_free_profile<2>(profile, model, order, noise);
+  if (order < 4) return with_free_profile<4>(profile, model, order, noise);
+  return with_free_profile<most_terms>(profile, model, order, noise);
 }
 
 double shift_of(const EdgeAlignment& alignment) {

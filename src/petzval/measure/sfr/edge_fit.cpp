@@ -173,7 +173,7 @@ void EdgeFit::settle_in_rows(const SfrOptions& options) {
 EdgeSpreadModel EdgeFit::variant() const {
   EdgeSpreadOptions options = model_->options();
   options.core_px *= 0.85, options.knot_px *= 0.8;
-  options.noise = noise_, options.smoothing = 0;
+  options.prior.noise = noise_, options.smoothing = 0;
   return EdgeSpreadModel(profile_.points, options);
 }
 
@@ -217,14 +217,14 @@ void EdgeFit::fit_profile() {
   const double rise = 4.39 * guess_.scale_px;
   EdgeSpreadOptions options;
   options.core_px = std::min(8 + 4 * rise, 0.7 * std::min(-profile_.low, profile_.high));
-  options.blur_px = std::max(1.0, 0.5 * rise);
-  options.noise = noise_;
+  options.prior.blur_px = std::max(1.0, 0.5 * rise);
+  options.prior.noise = noise_;
   // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
   options.knot_px = coarse_ ? 0.7 : options.core_px > 45 ? 0.5 : 0.25;
   options.light_order = light_order_;
   options.smoothing = smoothing_;
-  options.shapes = shapes_;
-  if (in_rows_) options.least_smoothing_share = 0.03;
+  options.prior.shapes = shapes_;
+  if (in_rows_) options.prior.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
   take_profile();
 }

@@ -10,25 +10,7 @@ namespace petzval {
 
 namespace {
 
-constexpr double b = 1;  // pixels: scale of the closed-form part
-
-constexpr double usual_tail_spread_px = 0.06;
-
-/// Of the shapes' unknowns, over the step. How wide an edge is, is known to 0.2 from its first fit. Of their
-/// difference 0.5 makes a Gaussian and −0.5 a circular pupil; defocus, spherical aberration and halos take up
-/// to that and a little more.
-constexpr std::array<double, EdgeShapes::count - 1> shape_spreads{0.2, 0.5};
-
-/// Least weight of the roughness, for samples without noise.
-constexpr double least_smoothing = 1e-12;
-/// Third differences of the coefficients of a sharp edge with knots a quarter of a pixel apart, over the
-/// step.
-constexpr double edge_roughness = 0.1;
-/// The same of what an edge has beside its shapes: defocus, spherical aberration and halos leave 0.03 to
-/// 0.08. Less would be a bias that all edges of a photograph share.
-constexpr double departure_roughness = 0.05;
-/// Greatest weight of the roughness far from the edge, over that at the edge.
-constexpr double most_weight = 1e8;
+constexpr double b = EdgeSpreadBasis::scale_px;
 
 /// Values and slopes [1/knot] of the six quintic cardinal B-splines that cover an interval between knots, at
 /// a share 0 ≤ t < 1 of it.
@@ -70,7 +52,7 @@ template <int fixed>
 void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand& normal,
                                  Eigen::VectorXd& right) {
   double corner[fixed][fixed] = {}, corner_right[fixed] = {};
-  const double cells = splines_ + support - 1;
+  const double cells = basis_.splines + support - 1;
   for (const EdgePoint& point : points) {
     Row& row = rows_.emplace_back();
     const double d = point.distance, q = 1 / (d * d + b * b);
@@ -83,7 +65,7 @@ void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand
       f[4] = point.light * point.along;
       f[5] = point.light * d / options_.core_px;
     }
-    if constexpr (fixed > closed_forms + light_terms[1]) {
+    if constexpr (fixed > closed_forms + EdgeSpreadBasis::light_terms[1]) {
       f[6] = f[4] * point.along;
       f[7] = f[5] * point.along;
       f[8] = f[5] * d / options_.core_px;
@@ -112,132 +94,45 @@ void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand
 }
 
 BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
-  BorderedBand result(splines_, border());
-  for (int j = 0; j < splines_; ++j) {
-    for (int i = j; i < std::min(splines_, j + support); ++i)
+  BorderedBand result(basis_.splines, basis_.border());
+  for (int j = 0; j < basis_.splines; ++j) {
+    for (int i = j; i < std::min(basis_.splines, j + support); ++i)
       result.at(i, j) = all.at(margin + i, margin + j);
-    for (int r = 0; r < fixed(); ++r) result.at(place(r), j) = all.at(padded() + r, margin + j);
+    for (int r = 0; r < basis_.fixed(); ++r) result.at(basis_.place(r), j) = all.at(padded() + r, margin + j);
   }
-  for (int r = 0; r < fixed(); ++r)
-    for (int s = 0; s <= r; ++s) result.at(place(r), place(s)) = all.at(padded() + r, padded() + s);
+  for (int r = 0; r < basis_.fixed(); ++r)
+    for (int s = 0; s <= r; ++s)
+      result.at(basis_.place(r), basis_.place(s)) = all.at(padded() + r, padded() + s);
   return result;
 }
 
-void EdgeSpreadModel::add_priors(BorderedBand& normal, double step_guess) const {
-  // In units of the noise: the first tail is about the usual one, the second below it at twice the blur.
-  const double noise = std::max(options_.noise, 1e-7 * step_guess);
-  const double weight1 = noise / (usual_tail_spread_px * step_guess);
-  const double offset = b / pi - usual_tail_px;
-  const int step = splines_ + 1, tail1 = splines_ + 2, tail3 = splines_ + 3;
-  normal.at(step, step) += weight1 * weight1 * offset * offset;
-  normal.at(tail1, step) += weight1 * weight1 * offset;
-  normal.at(tail1, tail1) += weight1 * weight1;
-  const double weight3 =
-      noise / (usual_tail_spread_px * step_guess * 4 * options_.blur_px * options_.blur_px);
-  normal.at(tail3, tail3) += weight3 * weight3;
-  if (!options_.shapes) return;
-  const int first = splines_ + closed_forms;
-  for (int k = 0; k < shapes(); ++k) {
-    const double weight = noise / (shape_spreads[static_cast<std::size_t>(k)] * step_guess);
-    normal.at(first + k, first + k) += weight * weight;
-  }
-}
-
-namespace {
-
-/// Coefficients of splines that pass through values at their middles; near the ends these stay as they are.
-std::vector<double> in_splines(const std::vector<double>& values) {
-  constexpr int rounds = 12;  // each leaves a fifth of what the values have at half their sampling frequency
-  std::vector<double> coefficients = values, rest(values.size(), 0.0);
-  for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 2; i + 2 < values.size(); ++i) {
-      const double* c = &coefficients[i];
-      rest[i] = values[i] - (c[-2] + 26 * c[-1] + 66 * c[0] + 26 * c[1] + c[2]) / 120;
-    }
-    for (std::size_t i = 0; i < values.size(); ++i) coefficients[i] += rest[i];
-  }
-  return coefficients;
-}
-
-}  // namespace
-
-/// What closed forms and shapes add to the coefficients whose roughness counts: with shapes, that of all the
-/// profile but step · shape 0 and the others, in any amount.
-std::vector<EdgeSpreadModel::RoughForm> EdgeSpreadModel::rough_forms() const {
-  if (!options_.shapes) return {};
-  constexpr int beyond = 8;  // the ends, where coefficients are not yet right
-  const int places = splines_ + 2 * beyond;
-  std::array<std::vector<double>, 3 + EdgeShapes::count - 1> values;
-  for (std::vector<double>& each : values) each.resize(static_cast<std::size_t>(places));
-  for (int j = 0; j < places; ++j) {
-    const double d = (j - 0.5 * (places - 1)) * options_.knot_px, q = 1 / (d * d + b * b);
-    const auto at = static_cast<std::size_t>(j), mirrored = static_cast<std::size_t>(places - 1 - j);
-    values[1][at] = -d * q;
-    values[2][at] = -d * q * q;
-    if (d < 0) continue;  // all are odd about ½
-    const std::array<double, EdgeShapes::count> shape = (*options_.shapes)(d);
-    values[0][at] = 0.5 + std::atan(d / b) / pi - shape[0];
-    values[3][at] = -shape[1], values[4][at] = -shape[2];
-    for (const std::size_t k : {0, 3, 4}) values[k][mirrored] = -values[k][at];
-  }
-  const std::array<int, values.size()> unknowns{splines_ + 1, splines_ + 2, splines_ + 3,
-                                                splines_ + closed_forms, splines_ + closed_forms + 1};
-  std::vector<RoughForm> forms;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    std::vector<double> coefficients = in_splines(values[k]);
-    forms.push_back({unknowns[k], {coefficients.begin() + beyond, coefficients.end() - beyond}});
-  }
-  return forms;
-}
-
-BorderedBand EdgeSpreadModel::roughness() const {
-  BorderedBand matrix(splines_, border());
-  const std::vector<RoughForm> forms = rough_forms();
-  for (int j = 0; j + 3 < splines_; ++j) {
-    // A line spread that falls as 1/d² has curvature that falls as 1/d⁴.
-    const double d = (j + 1.5 - 0.5 * (splines_ - 1)) * options_.knot_px / options_.blur_px;
-    const double square = (1 + d * d) * (1 + d * d), weight = std::min(square * square, most_weight);
-    constexpr double difference[4] = {-1, 3, -3, 1};
-    for (int p = 0; p < 4; ++p)
-      for (int q = 0; q <= p; ++q) matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
-    std::array<double, closed_forms + EdgeShapes::count> of_form{};
-    for (std::size_t k = 0; k < forms.size(); ++k) {
-      for (int p = 0; p < 4; ++p)
-        of_form[k] += difference[p] * forms[k].coefficients[static_cast<std::size_t>(j + p)];
-      for (int p = 0; p < 4; ++p) matrix.at(forms[k].unknown, j + p) += weight * of_form[k] * difference[p];
-      for (std::size_t l = 0; l <= k; ++l)
-        matrix.at(forms[k].unknown, forms[l].unknown) += weight * of_form[k] * of_form[l];
-    }
-  }
-  return matrix;
-}
-
 EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options)
-    : options_(options) {
-  splines_ = std::max(0, static_cast<int>(2 * options.core_px / options.knot_px) - (support - 1));
-  options_.core_px = 0.5 * options.knot_px * (splines_ + support - 1);
+    : options_(options),
+      basis_{EdgeSpreadBasis::splines_within(options.core_px, options.knot_px), options.knot_px,
+             options.light_order, options.prior.shapes ? EdgeShapes::count - 1 : 0} {
+  options_.core_px = basis_.core_px();
   rows_.reserve(points.size());
-  BorderedBand normal(padded(), fixed());
+  BorderedBand normal(padded(), basis_.fixed());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(normal.size());
   if (options_.light_order == 2)
-    add_points<closed_forms + light_terms[2]>(points, normal, right);
+    add_points<closed_forms + EdgeSpreadBasis::light_terms[2]>(points, normal, right);
   else if (options_.light_order == 1)
-    add_points<closed_forms + light_terms[1]>(points, normal, right);
+    add_points<closed_forms + EdgeSpreadBasis::light_terms[1]>(points, normal, right);
   else
     add_points<closed_forms>(points, normal, right);
   data_normal_ = trimmed(normal);
-  right_ = Eigen::VectorXd::Zero(splines_ + border());
-  right_.head(splines_) = right.segment(margin, splines_);
-  for (int r = 0; r < fixed(); ++r) right_[place(r)] = right[padded() + r];
+  right_ = Eigen::VectorXd::Zero(basis_.size());
+  right_.head(basis_.splines) = right.segment(margin, basis_.splines);
+  for (int r = 0; r < basis_.fixed(); ++r) right_[basis_.place(r)] = right[padded() + r];
   fit(points);
 }
 
 void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> points) {
   if (order >= options_.light_order) return;
-  const int before = lights();
-  options_.light_order = order;
-  data_normal_.drop_border(before - lights());
-  right_.conservativeResize(splines_ + border());
+  const int before = basis_.lights();
+  options_.light_order = basis_.light_order = order;
+  data_normal_.drop_border(before - basis_.lights());
+  right_.conservativeResize(basis_.size());
   fit(points);
 }
 
@@ -247,12 +142,13 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     low = std::min(low, point.value), high = std::max(high, point.value);
     square += point.value * point.value;
   }
+  const EdgePrior prior(options_.prior, basis_, high - low);
   BorderedBand normal = data_normal_;
-  add_priors(normal, high - low);
+  prior.add_first_part(normal);
   const double count = static_cast<double>(points.size());
   const double unit = count * options_.knot_px / (2 * options_.core_px);
-  const BorderedBand rough = roughness();
-  const double rank = std::max(0, splines_ - 3), unpenalised = normal.size() - shapes() - rank;
+  const BorderedBand rough = prior.roughness();
+  const double rank = prior.rank(), unsettled = prior.unsettled();
   const auto solve = [&](double smoothing) {
     BorderedBand whole = normal;
     whole.add(smoothing * unit, rough);
@@ -262,24 +158,20 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     solved.solution = solved.factor.solve(right_);
     const double rest = std::max(square - right_.dot(solved.solution), 1e-14 * square);
     solved.criterion =
-        (count - unpenalised) * std::log(rest) + solved.factor.log_determinant() - rank * std::log(smoothing);
+        (count - unsettled) * std::log(rest) + solved.factor.log_determinant() - rank * std::log(smoothing);
     return solved;
   };
   Solved best;
   if (options_.smoothing < 0) {
-    // The evidence may not call a profile smoother than edges are.
-    const double roughness = (options_.shapes ? departure_roughness : edge_roughness) *
-                             std::pow(options_.knot_px / (0.25 * options_.blur_px), 3) * (high - low);
-    const double most = std::max(least_smoothing, std::pow(options_.noise / roughness, 2) / unit);
+    const EdgePrior::Weights weights = prior.weights(unit);
     constexpr double factor = 4;
-    const double from = std::max(least_smoothing, options_.least_smoothing_share * most);
-    for (double smoothing = from; smoothing < factor * most; smoothing *= factor)
-      if (Solved solved = solve(std::min(smoothing, most)); solved.criterion < best.criterion) {
+    for (double smoothing = weights.least; smoothing < factor * weights.most; smoothing *= factor)
+      if (Solved solved = solve(std::min(smoothing, weights.most)); solved.criterion < best.criterion) {
         best = std::move(solved);
-        options_.smoothing = std::min(smoothing, most);
+        options_.smoothing = std::min(smoothing, weights.most);
       }
   } else {
-    options_.smoothing = std::max(options_.smoothing, least_smoothing);
+    options_.smoothing = std::max(options_.smoothing, EdgePrior::least_weight);
     best = solve(options_.smoothing);
   }
   priors_ = std::move(normal);
@@ -287,12 +179,9 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   priors_.add(options_.smoothing * unit, rough);
   coefficients_ = best.solution;
   factor_ = std::move(best.factor);
-  criterion_ = best.criterion;
-  for (int k = 0; k < shapes(); ++k)
-    criterion_ += 2 * std::log(shape_spreads[static_cast<std::size_t>(k)] * (high - low) /
-                               std::max(options_.noise, 1e-7 * (high - low)));
-  dark_ = coefficients_[splines_];
-  step_ = coefficients_[splines_ + 1];
+  criterion_ = best.criterion + prior.log_spread_of_shapes();
+  dark_ = coefficients_[basis_.dark()];
+  step_ = coefficients_[basis_.step()];
   evaluate_points(points);
 }
 
@@ -300,9 +189,9 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
   fitted_.clear(), variation_.clear();
   fitted_.reserve(points.size());
   variation_.reserve(points.size());
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(padded() + fixed());
-  c.segment(margin, splines_) = coefficients_.head(splines_);
-  const double* const closed = coefficients_.data() + splines_;
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(padded() + basis_.fixed());
+  c.segment(margin, basis_.splines) = coefficients_.head(basis_.splines);
+  const double* const closed = coefficients_.data() + basis_.splines;
   const double half_tail = 0.5 * (b / pi * closed[1] + closed[2]), per_px = 1 / options_.knot_px;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Row& row = rows_[i];
@@ -312,8 +201,8 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
     at.value = closed[0] + closed[1] * row.fixed[1] + closed[2] * row.fixed[2] + closed[3] * row.fixed[3] -
                variation;
     at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
-    for (std::size_t k = closed_forms; k < static_cast<std::size_t>(fixed()); ++k)
-      variation += coefficients_[place(static_cast<int>(k))] * row.fixed[k];
+    for (std::size_t k = closed_forms; k < static_cast<std::size_t>(basis_.fixed()); ++k)
+      variation += coefficients_[basis_.place(static_cast<int>(k))] * row.fixed[k];
     if (row.first >= 0) {
       double slope = 0;
       for (int p = 0; p < support; ++p) {
@@ -329,16 +218,16 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
 
 EdgeSpreadModel::ValueAndSlope EdgeSpreadModel::evaluate(double d) const {
   const double q = 1 / (d * d + b * b), dq = d * q;
-  const double* const closed = coefficients_.data() + splines_;
+  const double* const closed = coefficients_.data() + basis_.splines;
   ValueAndSlope at;
   at.value = closed[0] + closed[1] * (0.5 + std::atan(d / b) / pi) - closed[2] * dq - closed[3] * dq * q;
   at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
   const double place = (d + options_.core_px) / options_.knot_px, cell = std::floor(place);
-  if (!(cell >= 0) || cell >= splines_ + support - 1) return at;
+  if (!(cell >= 0) || cell >= basis_.splines + support - 1) return at;
   double values[support], slopes[support];
   quintic(place - cell, values, slopes);
   const int first = static_cast<int>(cell) - margin;
-  for (int i = std::max(0, -first); i < std::min(support, splines_ - first); ++i) {
+  for (int i = std::max(0, -first); i < std::min(support, basis_.splines - first); ++i) {
     at.value += coefficients_[first + i] * values[i];
     at.slope += coefficients_[first + i] * slopes[i] / options_.knot_px;
   }
@@ -346,16 +235,17 @@ EdgeSpreadModel::ValueAndSlope EdgeSpreadModel::evaluate(double d) const {
 }
 
 double EdgeSpreadModel::tail_px() const {
-  return b / pi + coefficients_[splines_ + 2] / step_;
+  return b / pi + coefficients_[basis_.tail1()] / step_;
 }
 
 EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, double noise) const {
   Variation result;
   if (options_.light_order == 0) return result;
   const double reach = reach_px / options_.core_px;
-  const std::array<double, light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
-  for (int k = light_terms[static_cast<std::size_t>(options_.light_order - 1)]; k < lights(); ++k) {
-    const Eigen::Index at = place(closed_forms + k);
+  const std::array<double, EdgeSpreadBasis::light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
+  for (int k = EdgeSpreadBasis::light_terms[static_cast<std::size_t>(options_.light_order - 1)];
+       k < basis_.lights(); ++k) {
+    const Eigen::Index at = basis_.place(closed_forms + k);
     const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
     const double coefficient = std::abs(coefficients_[at]);
     result.significance = std::max(result.significance,
@@ -370,30 +260,39 @@ double EdgeSpreadModel::unknowns() const {
   return trace_of_product(factor_.inverse(), data_normal_);
 }
 
-EdgeSpreadModel::Projection::Projection(const EdgeSpreadModel& model)
-    : model_(model), sums_(BorderedBand::Block::Zero(model.padded() + model.fixed(), BorderedBand::lanes)) {}
+template <int functions>
+EdgeSpreadModel::Projection<functions>::Projection(const EdgeSpreadModel& model)
+    : model_(model), sums_(decltype(sums_)::Zero(model.padded() + model.basis_.fixed(), functions)) {}
 
-void EdgeSpreadModel::Projection::add(std::size_t point,
-                                      const std::array<double, BorderedBand::lanes>& values) {
+template <int functions>
+void EdgeSpreadModel::Projection<functions>::add(std::size_t point,
+                                                 const std::array<double, functions>& values) {
   const Row& row = model_.rows_[point];
   const auto add_to = [&](int unknown, double weight) {
-    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * BorderedBand::lanes;
+    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * functions;
     for (std::size_t k = 0; k < values.size(); ++k) sum[k] += weight * values[k];
   };
   for (int p = 0; p < support && row.first >= 0; ++p)
     add_to(row.first + p, row.splines[static_cast<std::size_t>(p)]);
-  for (int r = 0; r < model_.fixed(); ++r)
+  for (int r = 0; r < model_.basis_.fixed(); ++r)
     add_to(model_.padded() + r, row.fixed[static_cast<std::size_t>(r)]);
 }
 
-EdgeSpreadModel::Projection::Matrix EdgeSpreadModel::Projection::taken() const {
-  BorderedBand::Block sums = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
-  sums.topRows(model_.splines_) = sums_.middleRows(margin, model_.splines_);
-  for (int r = 0; r < model_.fixed(); ++r) sums.row(model_.place(r)) = sums_.row(model_.padded() + r);
-  BorderedBand::Block solved = sums;
+template <int functions>
+typename EdgeSpreadModel::Projection<functions>::Matrix EdgeSpreadModel::Projection<functions>::taken()
+    const {
+  const EdgeSpreadBasis& basis = model_.basis_;
+  BorderedBand::Columns<functions> sums = decltype(sums)::Zero(basis.size(), functions);
+  sums.topRows(basis.splines) = sums_.middleRows(margin, basis.splines);
+  for (int r = 0; r < basis.fixed(); ++r) sums.row(basis.place(r)) = sums_.row(model_.padded() + r);
+  BorderedBand::Columns<functions> solved = sums;
   model_.factor_.solve_in_place(solved);
   return sums.transpose() * solved;
 }
+
+template class EdgeSpreadModel::Projection<2>;
+template class EdgeSpreadModel::Projection<4>;
+template class EdgeSpreadModel::Projection<BorderedBand::lanes>;
 
 namespace {
 
@@ -432,10 +331,10 @@ void for_spline_phases(double f, double knot_px, int splines, const Use& use) {
 std::complex<double> EdgeSpreadModel::transform(double f) const {
   const FormTransforms forms(f, options_.knot_px);
   const double* const c = coefficients_.data();
-  const double* const closed = c + splines_;
+  const double* const closed = c + basis_.splines;
   double even = 0, odd = 0;
-  for_spline_phases(f, options_.knot_px, splines_, [&](int j, double cosine, double sine) {
-    const int other = splines_ - 1 - j;
+  for_spline_phases(f, options_.knot_px, basis_.splines, [&](int j, double cosine, double sine) {
+    const int other = basis_.splines - 1 - j;
     const double partner = other > j ? c[other] : 0;
     even += (c[j] + partner) * cosine;
     odd += (c[j] - partner) * sine;
@@ -449,8 +348,8 @@ std::complex<double> EdgeSpreadModel::transform(double f) const {
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
-    : model_(model), spread_(model.splines_, model.border()) {
-  const int splines = model.splines_, fixed = model.fixed();
+    : model_(model), spread_(model.basis_.splines, model.basis_.border()) {
+  const int splines = model.basis_.splines, fixed = model.basis_.fixed();
   BorderedBand all(model.padded(), fixed);
   double mean = 0;
   for (std::size_t i = 0; i < variance.size(); ++i) {
@@ -476,13 +375,13 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
         const Row& row = model.rows_[i];
         for (int p = 0; p < support && row.first >= 0; ++p)
           if (const int j = row.first + p - margin; j >= 0 && j < splines) entry(j, row.splines[p]);
-        for (int r = 0; r < fixed; ++r) entry(model.place(r), row.fixed[r]);
+        for (int r = 0; r < fixed; ++r) entry(model.basis_.place(r), row.fixed[r]);
       },
       rounding_);
 }
 
 void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient, int stride) const {
-  const int splines = model_.splines_;
+  const int splines = model_.basis_.splines;
   const std::complex<double> value = model_.transform(f);
   const double modulus = std::abs(value);
   const double real = modulus > 0 ? value.real() / modulus : 1,

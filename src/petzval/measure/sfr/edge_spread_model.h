@@ -3,21 +3,17 @@
 #pragma once
 
 #include <petzval/measure/sfr/bordered_band.h>
-#include <petzval/measure/sfr/edge_shapes.h>
+#include <petzval/measure/sfr/edge_prior.h>
+#include <petzval/measure/sfr/edge_spread_basis.h>
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <Eigen/Core>
 #include <array>
 #include <complex>
-#include <optional>
 #include <span>
 #include <vector>
 
 namespace petzval {
-
-/// What diffraction-limited and moderately aberrated pupils leave at a distance d, times d [pixels]: 0.0645
-/// λN; with a spread as large again it covers f/2 to f/22 on pixels of 1 to 10 µm.
-inline constexpr double usual_tail_px = 0.06;
 
 /// A sample by its distance from the edge.
 struct EdgePoint {
@@ -30,17 +26,11 @@ struct EdgePoint {
 struct EdgeSpreadOptions {
   double core_px = 10;    ///< splines reach as far as this from the edge; beyond it there is only the tail
   double knot_px = 0.25;  ///< spacing of the splines
-  double blur_px = 1;     ///< scale of the transition, for the prior of the tail's second term
-  double noise = 0;       ///< standard deviation of the values, 0: not known yet
-  /// Weight of the roughness of the profile against the data; negative: chosen by the evidence.
-  double smoothing = -1;
-  /// The least that is chosen over the most that edges can bear: more where samples leave gaps, for there
-  /// the evidence is of what else the model lacks.
-  double least_smoothing_share = 1e-6;
   /// The light on the target may vary along the edge and across it: 0 not, 1 linearly, 2 as a parabola.
   int light_order = 0;
-  /// What the profile is expected to look like; absent: smooth.
-  std::optional<EdgeShapes> shapes;
+  /// Weight of the roughness of the profile against the data; negative: chosen by the evidence.
+  double smoothing = -1;
+  EdgePriorOptions prior;
 };
 
 /// E(d) = dark + step · (½ + atan(d/b)/π) − tail1 d/(d² + b²) − tail3 d/(d² + b²)² + Σ c_j B_j(d), b = 1
@@ -49,13 +39,9 @@ struct EdgeSpreadOptions {
 /// without bins, so there is no bin and no derivative to correct for, and the transform of E′ is known in
 /// closed form. A weak prior keeps the tail sensible where noise hides it.
 ///
-/// Third differences of the splines' coefficients cost as much as the restricted likelihood of the samples
-/// finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows
-/// itself to be, without noise it is free but for 1e-10 of the weight of the data, which joins the splines
-/// where samples leave gaps.
-///
-/// With shapes it is not the profile's roughness that costs, but that of its difference from the nearest of
-/// them, of any width (to first order) and between both or a little beyond.
+/// The roughness of the prior costs as much as the restricted likelihood of the samples finds best (G. Wahba,
+/// Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows itself to be, without noise
+/// it is free but for 1e-10 of the weight of the data, which joins the splines where samples leave gaps.
 ///
 /// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
 /// as K₃/r³, and K₃ is half of what the edge keeps.
@@ -92,7 +78,7 @@ class EdgeSpreadModel {
   double step() const { return step_; }
   /// A/step: what the edge still misses at a distance d is this over d [pixels].
   double tail_px() const;
-  double core_px() const { return options_.core_px; }
+  double core_px() const { return basis_.core_px(); }
   const EdgeSpreadOptions& options() const { return options_; }
   /// ∫ E′(d) exp(−2πifd) dd / step.
   std::complex<double> transform(double frequency_cpp) const;
@@ -105,18 +91,19 @@ class EdgeSpreadModel {
 
   /// What the profile can take of other functions of the points, so that these and it can be fitted together
   /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
+  template <int functions>  // 2, 4 or BorderedBand::lanes
   class Projection {
    public:
-    using Matrix = Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes>;
+    using Matrix = Eigen::Matrix<double, functions, functions>;
     explicit Projection(const EdgeSpreadModel& model);
     /// The values that the functions have at a point that the model was made from; 0 at those not named.
-    void add(std::size_t point, const std::array<double, BorderedBand::lanes>& values);
+    void add(std::size_t point, const std::array<double, functions>& values);
     /// Sums over the points of the products of what the profile takes.
     Matrix taken() const;
 
    private:
     const EdgeSpreadModel& model_;
-    BorderedBand::Block sums_;
+    BorderedBand::Columns<functions> sums_;
   };
 
   /// Standard deviations of |transform|: of noise of the given variances at the points, of their rounding,
@@ -142,42 +129,25 @@ class EdgeSpreadModel {
   };
 
  private:
-  static constexpr int closed_forms = 4;  ///< dark, step, tail1, tail3
-  /// Terms of light that varies, to each order.
-  static constexpr std::array<int, 3> light_terms = {0, 2, 5};
-  static constexpr int support = 6;
+  static constexpr int closed_forms = EdgeSpreadBasis::closed_forms, support = EdgeSpreadBasis::support;
   /// What the unknowns do to the value at a point. The splines come first, then the closed forms.
   struct Row {
     int first =
         -1;  ///< of the splines that are not zero, counted from `margin` before the first unknown; −1: none
     std::array<double, support> splines, slopes;  ///< slopes [1/knot]
-    std::array<double, closed_forms + light_terms.back()> fixed;
+    std::array<double, closed_forms + EdgeSpreadBasis::light_terms.back()> fixed;
   };
   /// Splines that reach beyond the core have no unknown; rows count them all the same, so that all are alike.
   static constexpr int margin = support - 1;
-  int lights() const { return light_terms[static_cast<std::size_t>(options_.light_order)]; }
-  int fixed() const { return closed_forms + lights(); }
-  int shapes() const { return options_.shapes ? EdgeShapes::count - 1 : 0; }
-  /// The unknowns that are no splines: closed forms, shapes, which no sample touches, and light that varies.
-  int border() const { return fixed() + shapes(); }
-  int place(int form) const { return splines_ + form + (form < closed_forms ? 0 : shapes()); }
-  int padded() const { return splines_ + 2 * margin; }
+  int padded() const { return basis_.splines + 2 * margin; }
   template <int fixed>
   void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);
   BorderedBand trimmed(const BorderedBand& padded) const;
   void fit(std::span<const EdgePoint> points);
   void evaluate_points(std::span<const EdgePoint> points);
-  void add_priors(BorderedBand& normal, double step_guess) const;
-  /// A function that has an unknown of its own, by the splines' coefficients.
-  struct RoughForm {
-    int unknown;
-    std::vector<double> coefficients;
-  };
-  std::vector<RoughForm> rough_forms() const;
-  BorderedBand roughness() const;
 
   EdgeSpreadOptions options_;
-  int splines_ = 0;
+  EdgeSpreadBasis basis_;
   double dark_ = 0, step_ = 1, criterion_ = 0;
   Eigen::VectorXd coefficients_;
   std::vector<Row> rows_;  ///< of the points

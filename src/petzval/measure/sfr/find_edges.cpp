@@ -37,11 +37,14 @@ Axis axis_of(const FoundEdge& e) {
 }
 
 /// How far from the ends samples are taken: corners round off over the blur, and the PSF's tail looks round
-/// them.
+/// them. What they add to the SFR falls as the square of this distance, and has to stay a tenth of what noise
+/// scatters.
 double trim_of(const FoundEdge& edge, double noise) {
-  // Half as much where noise hides what is left of the corners, 1e-3 of the SFR.
-  constexpr double noisy = 0.005;
-  return std::clamp((noise < noisy ? 0.12 : 0.06) * edge.length_px(), 3.0, 20.0);
+  constexpr double share = 0.06, least_px = 3, most_px = 20;  // at this noise:
+  constexpr double usual_noise = 0.01, nearest_px = 2;
+  const double farther = std::min(2.0, std::sqrt(usual_noise / std::max(1e-9, noise)));
+  return std::clamp(share * farther * edge.length_px(), std::clamp(least_px * farther, nearest_px, least_px),
+                    most_px);
 }
 
 /// Sets how far the edge is free on either side, over the part of it that is sampled.
