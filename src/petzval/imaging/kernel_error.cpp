@@ -101,12 +101,11 @@ class ErrorAtPlaces {
       return std::min(exact.radius, along.count() - margin_ - 1 - at);
     };
     const LitPart lit{last(across_, column), last(down_, row)};
-    const double error =
-        axis == Axis::across
-            ? squared_error(exact, lit, column, layout.tile, layout.nodes,
-                            [&](double at) { return kernel(at, row, quadrant); })
-            : squared_error(exact, lit, row, layout.tile, layout.nodes,
-                            [&](double at) { return kernel(column, at, quadrant); });
+    const double error = axis == Axis::across
+                             ? squared_error(exact, lit, column, layout.tile, layout.nodes,
+                                             [&](double at) { return kernel(at, row, quadrant); })
+                             : squared_error(exact, lit, row, layout.tile, layout.nodes,
+                                             [&](double at) { return kernel(column, at, quadrant); });
     return error / (1 + square);
   }
 
@@ -244,8 +243,7 @@ class LayoutErrors::Impl {
     }
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
-    if (count() > 0)
-      worst_axis_ = along[order_[0]][0] > along[order_[0]][1] ? Axis::across : Axis::down;
+    if (count() > 0) worst_axis_ = along[order_[0]][0] > along[order_[0]][1] ? Axis::across : Axis::down;
     std::copy_n(squares.begin(), std::min<std::size_t>(count(), KernelError::first_places),
                 error.first_squares.begin());
     const double total = std::accumulate(squares.begin(), squares.end(), 0.0);
@@ -358,8 +356,7 @@ bool LayoutErrors::Impl::does_with_less(const Layout& layout, double limit, cons
       const std::size_t few = places_looked_at(from, to);
       const double most = limit * limit * double(few) / share_of(from, to);
       double sum = 0;
-      for (std::size_t i = 0; i < few && !(sum > most); ++i)
-        sum += square_in_shell(layout, k, from, to, i);
+      for (std::size_t i = 0; i < few && !(sum > most); ++i) sum += square_in_shell(layout, k, from, to, i);
       return !(sum > most);
     }
     from = to;

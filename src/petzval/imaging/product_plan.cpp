@@ -371,8 +371,7 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
       return plan;
   // To look at zones takes as long as that.
   constexpr double worth_zones_ns = 0.5e9;
-  if (options.tile != 0 || options.nodes != 0 || options.direct)
-    return cheapest(psfs, grid, options, known);
+  if (options.tile != 0 || options.nodes != 0 || options.direct) return cheapest(psfs, grid, options, known);
   std::optional<ProductPlan> best = cheapest(psfs, grid, options, known, worth_zones_ns);
   if (best && best->total_ns() <= worth_zones_ns) return best;
   try_zones(psfs, grid, options, best);
