@@ -165,7 +165,8 @@ TEST(HeightLook, CutsCellsAtTheLastHeight) {
   const double whole = light_at(last_mm - pitch_mm, 0);
   EXPECT_GT(whole, 0);
   EXPECT_NEAR(light_at(last_mm + pitch_mm / 4, 0) / whole, 0.25, 0.1);
-  // Its corner alone lies within: a right triangle whose height over its longest side is a fifth of the diagonal.
+  // Its corner alone lies within: a right triangle whose height over its longest side is a fifth of the
+  // diagonal.
   const double along = (last_mm + 0.3 * std::sqrt(2.0) * pitch_mm) / std::sqrt(2.0);
   EXPECT_NEAR(light_at(along, along) / whole, 0.08, 0.06);
   EXPECT_EQ(light_at(last_mm + 1.5 * pitch_mm, 0), 0);
