@@ -8,7 +8,10 @@
 #include <petzval/imaging/product_blur.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <vector>
 
 namespace petzval {
 namespace {
@@ -75,6 +78,98 @@ TEST(KernelError, IsOfWhatIsLit) {
                near = kernel_error(psfs, {{side, side, 10}, 0, &map.look()}, 12, 3).rms;
   EXPECT_GT(near, 0);
   EXPECT_NEAR(far / near, 1, 0.35);
+}
+
+/// PSFs that hardly change but at the very rim, where they do from cell to cell.
+LensDataTable wild_at_the_rim() {
+  TableRecipe recipe;
+  recipe.fields = {0, 4, 8, 12, 16, 18, 19, 19.6, 20};
+  recipe.height_mm = [](double field, double) { return height_mm_per_tangent * std::tan(radians(field)); };
+  recipe.psf = [](double field, double) {
+    const double wide = 2 + 0.05 * field + 3 * std::pow(field / 20, 60);
+    return psf_of_spots({{0, 0, wide, wide, 1}}, 129, 0.5);
+  };
+  return make_table(recipe);
+}
+
+struct WildRim {
+  LensDataTable table = wild_at_the_rim();
+  LightCentres centres{table};
+  SensorGeometry cells{288, 216, 2000 * table.real_image_height_mm.back() / std::hypot(288, 216)};
+  PsfField psfs{table, 550, cells.pitch_um, PsfInterpolation::psf, centres};
+};
+
+struct TilesAndNodes {
+  int tile, nodes;
+};
+constexpr std::array layouts{TilesAndNodes{72, 2}, TilesAndNodes{48, 3}, TilesAndNodes{24, 2},
+                             TilesAndNodes{24, 4}, TilesAndNodes{12, 3}, TilesAndNodes{6, 4},
+                             TilesAndNodes{3, 3}};
+
+// What was looked at before, and where a look ended, changes no verdict and no error that is within.
+TEST(KernelError, DoesNotDependOnWhatWasLookedAtBefore) {
+  const WildRim rim;
+  for (const double limit : {1e-4, 1e-3, 1e-2}) {
+    LayoutErrors errors(rim.psfs, rim.cells);
+    int within = 0;
+    for (const auto& [tile, nodes] : layouts) {
+      const double alone = kernel_error(rim.psfs, rim.cells, tile, nodes).rms,
+                   in_turn = errors.at_places(tile, nodes, limit).rms;
+      EXPECT_EQ(in_turn > limit, alone > limit) << tile << " " << nodes << " at " << limit;
+      if (alone > limit) continue;
+      EXPECT_NEAR(in_turn / alone, 1, 1e-12);
+      ++within;
+    }
+    std::printf("%d of %zu layouts within %g\n", within, layouts.size(), limit);
+  }
+}
+
+// Who does with a smaller ring than another is never turned away, and somebody is.
+TEST(KernelError, TellsWhoDoesWithASmallerRing) {
+  const WildRim rim;
+  int turned_away = 0, smaller = 0;
+  for (const double limit : {1e-4, 3e-4, 1e-3}) {
+    LayoutErrors errors(rim.psfs, rim.cells);
+    for (const auto& [tile, nodes] : layouts) {
+      const CellRing ring = errors.at_rim(tile, nodes, limit).ring;
+      if (ring.empty()) continue;
+      for (const auto& [other_tile, other_nodes] : layouts) {
+        const RimError other = errors.at_rim(other_tile, other_nodes, limit);
+        const bool does = errors.does_with_less(other_tile, other_nodes, limit, ring);
+        if (other.within && (other.ring.empty() || other.ring.from > ring.from)) {
+          EXPECT_TRUE(does) << other_tile << " " << other_nodes << " beside " << tile << " " << nodes;
+          ++smaller;
+        }
+        turned_away += does ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_GT(smaller, 0);
+  EXPECT_GT(turned_away, 0);
+}
+
+// A cell whose middle lies beyond the last height of a lens has the light of its part within.
+TEST(HeightLook, CutsCellsAtTheLastHeight) {
+  const LensDataTable table = make_table(comatic_recipe());
+  constexpr double nm = 550;
+  const double height_mm = table.real_image_height_mm.back();
+  const SceneMap map(table, LightCentres(table), {}, nm, Scene(64, 48, {nm}, 4, {}), 2 * height_mm);
+  const double last_mm = map.look().last_height_mm(), pitch_mm = last_mm / 20;
+  const auto light_at = [&](double x_mm, double y_mm) {
+    std::vector<ScenePart> parts;
+    map.look().cut(x_mm, y_mm, pitch_mm, 64, parts);
+    double light = 0;
+    for (const ScenePart& part : parts) light += part.place.g_source_sr;
+    return light / double(parts.size());
+  };
+  const double whole = light_at(last_mm - pitch_mm, 0);
+  EXPECT_GT(whole, 0);
+  EXPECT_NEAR(light_at(last_mm + pitch_mm / 4, 0) / whole, 0.25, 0.1);
+  // Its corner alone lies within: a right triangle whose height over its longest side is a fifth of the
+  // diagonal.
+  const double along = (last_mm + 0.3 * std::sqrt(2.0) * pitch_mm) / std::sqrt(2.0);
+  EXPECT_NEAR(light_at(along, along) / whole, 0.08, 0.06);
+  EXPECT_EQ(light_at(last_mm + 1.5 * pitch_mm, 0), 0);
 }
 
 }  // namespace

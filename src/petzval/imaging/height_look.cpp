@@ -87,6 +87,8 @@ void HeightLook::cut(double x_mm, double y_mm, double pitch_mm, int most,
   const int count = static_cast<int>(std::clamp(std::ceil(samples - rounding), 1.0, double(most)));
   const double part_mm = pitch_mm / count;
   parts.clear();
+  const bool wholly_dark = std::hypot(x_mm, y_mm) > last_height_mm_ + pitch_mm;
+  if (wholly_dark) return parts.push_back({near.place(x_mm, y_mm), 0, 0});
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < count; ++j) {
       const double x = x_mm + (j - (count - 1) / 2.0) * part_mm, y = y_mm + (i - (count - 1) / 2.0) * part_mm;

@@ -51,6 +51,8 @@ double squared_error(const Kernel& exact, const LitPart& lit, int at, int tile,
   return sum;
 }
 
+enum class Axis { across, down };
+
 struct Layout {
   int tile;
   std::vector<double> nodes;
@@ -85,24 +87,26 @@ class ErrorAtPlaces {
     const double light = look_->place(place[0], place[1]).g_source_sr;
     return light * light;
   }
-  /// Σd²/(1 + Σh²). \param quadrant  where the cell lies. \param kept  its true kernel, if it is known, and
-  /// for the next time.
-  double square(const Layout& layout, int column, int row, const Quadrant& quadrant, Kernel& kept) const {
+  /// Σd²/(1 + Σh²) of what interpolation along one axis adds. \param quadrant  where the cell lies.
+  /// \param kept  its true kernel, if it is known, and for the next time.
+  double square_along(Axis axis, const Layout& layout, int column, int row, const Quadrant& quadrant,
+                      Kernel& kept) const {
     constexpr std::size_t most_kept = 100'000;  // weights of a kernel: of all places 90 MB
     Kernel made = kept.weights.empty() ? kernel(column, row, quadrant) : Kernel();
     if (kept.weights.empty() && made.weights.size() <= most_kept) kept = std::move(made);
     const Kernel& exact = kept.weights.empty() ? made : kept;
     double square = 0;
     for (const double weight : exact.weights) square += weight * weight;
-    const auto last = [&](const OutwardAxis& axis, int at) {
-      return std::min(exact.radius, axis.count() - margin_ - 1 - at);
+    const auto last = [&](const OutwardAxis& along, int at) {
+      return std::min(exact.radius, along.count() - margin_ - 1 - at);
     };
     const LitPart lit{last(across_, column), last(down_, row)};
-    const auto along_row = [&](double at) { return kernel(at, row, quadrant); };
-    const auto along_column = [&](double at) { return kernel(column, at, quadrant); };
-    return (squared_error(exact, lit, column, layout.tile, layout.nodes, along_row) +
-            squared_error(exact, lit, row, layout.tile, layout.nodes, along_column)) /
-           (1 + square);
+    const double error = axis == Axis::across
+                             ? squared_error(exact, lit, column, layout.tile, layout.nodes,
+                                             [&](double at) { return kernel(at, row, quadrant); })
+                             : squared_error(exact, lit, row, layout.tile, layout.nodes,
+                                             [&](double at) { return kernel(column, at, quadrant); });
+    return error / (1 + square);
   }
 
  private:
@@ -215,9 +219,16 @@ class LayoutErrors::Impl {
   }
 
   KernelError at_places(const Layout& layout, double limit) {
-    // The few that were the worst of another layout come first.
-    std::size_t at_once = ordered_ ? 2 : KernelError::first_places;
     const double most = limit * limit * double(std::max<std::size_t>(1, count())) / share();
+    KernelError error;
+    // What was the worst of another layout comes first: most layouts that fail do so there.
+    if (worst_axis_ && count() > 0) {
+      const double worst = square_along(*worst_axis_, layout, order_[0]);
+      error.rms = std::sqrt(share() * worst / double(count()));
+      if (worst > most) return error;
+    }
+    std::size_t at_once = worst_axis_ ? 2 : KernelError::first_places;
+    std::vector<std::array<double, 2>> along(count());  // across and down
     std::vector<double> squares(count());
     double sum = 0;
     for (std::size_t first = 0, end = 0; first < count() && !(sum > most); first = end) {
@@ -225,28 +236,34 @@ class LayoutErrors::Impl {
       at_once = KernelError::first_places;
       parallel_for(end - first, [&](std::size_t i) {
         const std::size_t place = order_[first + i];
-        squares[place] = square(layout, place);
+        along[place] = {square_along(Axis::across, layout, place), square_along(Axis::down, layout, place)};
+        squares[place] = along[place][0] + along[place][1];
       });
       for (std::size_t i = first; i < end; ++i) sum += squares[order_[i]];
     }
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
-    ordered_ = true;
-    KernelError error;
-    std::copy_n(squares.begin(), std::min(count(), error.first_squares.size()), error.first_squares.begin());
+    if (count() > 0) worst_axis_ = along[order_[0]][0] > along[order_[0]][1] ? Axis::across : Axis::down;
+    std::copy_n(squares.begin(), std::min<std::size_t>(count(), KernelError::first_places),
+                error.first_squares.begin());
     const double total = std::accumulate(squares.begin(), squares.end(), 0.0);
     error.rms = std::sqrt(share() * total / double(std::max<std::size_t>(1, count())));
     return error;
   }
 
   RimError at_rim(const Layout& layout, double limit);
+  bool does_with_less(const Layout& layout, double limit, const CellRing& ring);
   /// The mean square error in the outermost cells; nothing if the rim is too small to be looked at.
   std::optional<double> outermost(const Layout& layout);
 
  private:
-  double square(const Layout& layout, std::size_t index) {
+  double square_along(Axis axis, const Layout& layout, std::size_t index) {
     const LitPlace& place = places_.inside[index];
-    return place.weight * errors_.square(layout, place.column, place.row, place.quadrant, exact_[index]);
+    return place.weight *
+           errors_.square_along(axis, layout, place.column, place.row, place.quadrant, exact_[index]);
+  }
+  double square(const Layout& layout, std::size_t index) {
+    return square_along(Axis::across, layout, index) + square_along(Axis::down, layout, index);
   }
   /// Cells of the picture inside the last height of a table, the outermost first.
   const std::vector<Place>& rim() {
@@ -264,17 +281,26 @@ class LayoutErrors::Impl {
   double share_of(std::size_t from, std::size_t to) {
     return rim_->share * double(to - from) / double(rim().size());
   }
-  /// The mean square error, weighted, over some of the places [from, to) of a shell.
+  /// The square of the error at one of the places [from, to) of a shell that are looked at, weighted.
+  double square_in_shell(const Layout& layout, std::size_t shell, std::size_t from, std::size_t to,
+                         std::size_t i) {
+    const std::size_t few = places_looked_at(from, to);
+    const Place& place = rim()[from + (2 * i + 1) * (to - from) / (2 * few)];
+    if (place.weight == 0) return 0;
+    const auto along = [&](Axis axis) {
+      return errors_.square_along(axis, layout, place.column, place.row, {true, true}, rim_exact_[shell][i]);
+    };
+    return place.weight * (along(Axis::across) + along(Axis::down));
+  }
+  static std::size_t places_looked_at(std::size_t from, std::size_t to) {
+    return std::min(places_a_shell, to - from);
+  }
+  /// Their mean.
   double square_of_shell(const Layout& layout, std::size_t shell, std::size_t from, std::size_t to) {
-    const std::vector<Place>& places = rim();
-    const std::size_t few = std::min(places_a_shell, to - from);
+    rim();  // made by one thread
+    const std::size_t few = places_looked_at(from, to);
     std::array<double, places_a_shell> squares{};
-    parallel_for(few, [&](std::size_t i) {
-      const Place& place = places[from + (2 * i + 1) * (to - from) / (2 * few)];
-      squares[i] = place.weight == 0 ? 0
-                                     : place.weight * errors_.square(layout, place.column, place.row,
-                                                                     {true, true}, rim_exact_[shell][i]);
-    });
+    parallel_for(few, [&](std::size_t i) { squares[i] = square_in_shell(layout, shell, from, to, i); });
     return std::accumulate(squares.begin(), squares.end(), 0.0) / double(few);
   }
 
@@ -283,7 +309,7 @@ class LayoutErrors::Impl {
   LitPlaces places_;
   std::vector<Kernel> exact_;
   std::vector<std::size_t> order_;
-  bool ordered_ = false;
+  std::optional<Axis> worst_axis_;  ///< at the first place of that order
   std::optional<Places> rim_;
   std::array<std::array<Kernel, places_a_shell>, most_shells> rim_exact_;
 };
@@ -320,6 +346,24 @@ RimError LayoutErrors::Impl::at_rim(const Layout& layout, double limit) {
   return error;
 }
 
+/// The shells of a ring but its innermost are left out already: with that one left in, the error must stay
+/// within the limit.
+bool LayoutErrors::Impl::does_with_less(const Layout& layout, double limit, const CellRing& ring) {
+  std::size_t from = 0;
+  for (std::size_t k = 0; k < most_shells; ++k) {
+    const std::size_t to = std::max(from + 1, end_of_shell(k));
+    if (rim()[to].radius <= ring.from) {
+      const std::size_t few = places_looked_at(from, to);
+      const double most = limit * limit * double(few) / share_of(from, to);
+      double sum = 0;
+      for (std::size_t i = 0; i < few && !(sum > most); ++i) sum += square_in_shell(layout, k, from, to, i);
+      return !(sum > most);
+    }
+    from = to;
+  }
+  return true;
+}
+
 std::optional<double> LayoutErrors::Impl::outermost(const Layout& layout) {
   if (rim_is_too_small()) return {};
   return square_of_shell(layout, 0, 0, std::max<std::size_t>(1, end_of_shell(0)));
@@ -335,6 +379,10 @@ KernelError LayoutErrors::at_places(int tile, int nodes, double limit) {
 
 RimError LayoutErrors::at_rim(int tile, int nodes, double limit) {
   return impl_->at_rim({tile, nodes}, limit);
+}
+
+bool LayoutErrors::does_with_less(int tile, int nodes, double limit, const CellRing& ring) {
+  return impl_->does_with_less({tile, nodes}, limit, ring);
 }
 
 KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {

@@ -66,6 +66,9 @@ class LayoutErrors {
   KernelError at_places_like(const KernelError& known, int tile, int nodes, int few);
   /// \param limit  for the RMS error of the rim, as a part of the whole grid's.
   RimError at_rim(int tile, int nodes, double limit);
+  /// Whether a layout may do with a smaller ring than the one that at_rim() found for another, of which a few
+  /// kernels tell most.
+  bool does_with_less(int tile, int nodes, double limit, const CellRing& ring);
   /// The same for PSFs that differ little from others of which it is known: unless that found a ring, the
   /// outermost cells tell by how much all have changed.
   RimError at_rim_like(const RimError& known, int tile, int nodes, double limit);

@@ -41,8 +41,9 @@ TilesInZone::TilesInZone(const CellRing& zone, const OutwardAxis& across, const 
   for (std::size_t row = 0; row < tiles_down_; ++row)
     for (std::size_t column = 0; column < tiles_across_; ++column) {
       const auto radius = [&](int into) {
-        return std::hypot(across.position(double(column) * tile + into),
-                          down.position(double(row) * tile + into));
+        const double x = across.position(double(column) * tile + into),
+                     y = down.position(double(row) * tile + into);
+        return std::sqrt(x * x + y * y);  // std::hypot() is slower
       };
       taken_[row * tiles_across_ + column] = radius(0) < zone.to && radius(tile - 1) >= zone.from;
     }

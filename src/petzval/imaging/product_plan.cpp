@@ -244,9 +244,19 @@ void take_errors(const ProductPlan& from, ProductPlan& plan) {
   plan.exact_ns = from.exact_ns;
 }
 
-/// The cheapest layout for a zone, if any serves.
+/// Layouts of a zone whose errors are known.
+struct KnownLayouts {
+  LayoutErrors errors;
+  std::vector<ProductPlan> failed = {}, served = {};
+
+  KnownLayouts(const PsfField& psfs, const SourceGrid& grid) : errors(psfs, grid) {}
+};
+
+/// The cheapest layout for a zone, if any serves. Those that take longer than `most_ns` are not looked at.
 std::optional<ProductPlan> cheapest(const PsfField& psfs, const SourceGrid& grid,
-                                    const ProductOptions& options, LayoutErrors& errors) {
+                                    const ProductOptions& options, KnownLayouts& known,
+                                    double most_ns = INFINITY) {
+  auto& [errors, failed, served] = known;
   const double limit = options.layout_given() ? INFINITY : caution * options.tolerance;
   const auto serves = [&](ProductPlan& plan) {
     plan.error_at_places = errors.at_places(plan.tile, plan.nodes, limit);
@@ -256,11 +266,15 @@ std::optional<ProductPlan> cheapest(const PsfField& psfs, const SourceGrid& grid
     return !std::isinf(grid.zone.to) ||
            mend_rim(psfs, grid, errors.at_rim(plan.tile, plan.nodes, limit), plan);
   };
-  std::vector<ProductPlan> failed, served;
   std::optional<ProductPlan> best;
+  // Layouts come the cheapest first: what needs as many kernels of cells as another before it is dearer.
+  const auto too_dear = [&](const ProductPlan& plan) {
+    return best && !best->exact.empty() &&
+           !errors.does_with_less(plan.tile, plan.nodes, limit, best->rim_error.ring);
+  };
   const auto choose = [&](bool by_rows) {
     for (ProductPlan& plan : candidates(psfs, grid, options, by_rows)) {
-      if (best && plan.total_ns() >= best->total_ns()) break;
+      if (plan.total_ns() >= std::min(most_ns, best ? best->total_ns() : INFINITY)) break;
       if (std::ranges::any_of(failed,
                               [&](const ProductPlan& other) { return fails_like(other, plan, limit); }))
         continue;
@@ -270,7 +284,7 @@ std::optional<ProductPlan> cheapest(const PsfField& psfs, const SourceGrid& grid
       });
       if (same != served.end())
         take_errors(*same, plan);
-      else if (serves(plan))
+      else if (!too_dear(plan) && serves(plan))
         served.push_back(plan);
       else {
         failed.push_back(plan);
@@ -311,7 +325,7 @@ ProductPlan with_inner(ProductPlan outer, const ProductPlan& inner) {
 /// Large tiles about the axis and small ones at the rim, if that is cheaper than another plan.
 void try_zones(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options,
                std::optional<ProductPlan>& best) {
-  constexpr std::array parts_of_rim{0.94, 0.85};
+  constexpr std::array parts_of_rim{0.85, 0.94};
   const SensorGeometry& cells = grid.cells;
   const double corner = std::hypot(cells.columns / 2.0 - grid.margin, cells.rows / 2.0 - grid.margin),
                rim = std::min(corner, psfs.rim_mm() / (psfs.cell_um() * mm_per_um));
@@ -319,11 +333,13 @@ void try_zones(const PsfField& psfs, const SourceGrid& grid, const ProductOption
     const double radius = part * rim;
     if (radius <= ProductPlan::fade) continue;
     const SourceGrid inside = inner_zone(grid, radius), outside = outer_zone(grid, radius);
-    LayoutErrors errors_inside(psfs, inside), errors_outside(psfs, outside);
-    const auto inner = cheapest(psfs, inside, of_zone(options), errors_inside);
-    if (!inner || (best && inner->total_ns() >= best->total_ns())) continue;
-    const auto outer = cheapest(psfs, outside, of_zone(options), errors_outside);
-    if (!outer || (best && inner->total_ns() + outer->total_ns() >= best->total_ns())) continue;
+    KnownLayouts known_inside(psfs, inside), known_outside(psfs, outside);
+    const double most_ns = best ? best->total_ns() : INFINITY;
+    const auto inner = cheapest(psfs, inside, of_zone(options), known_inside, most_ns);
+    if (!inner || inner->total_ns() >= most_ns) continue;
+    const double left_ns = most_ns - inner->total_ns();
+    const auto outer = cheapest(psfs, outside, of_zone(options), known_outside, left_ns);
+    if (!outer || outer->total_ns() >= left_ns) continue;
     best = with_inner(*outer, *inner);
   }
 }
@@ -347,17 +363,21 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
-  LayoutErrors errors(psfs, grid);
+  KnownLayouts known(psfs, grid);
   if (hint)
-    if (std::optional<ProductPlan> plan = hint->inner.empty() ? kept_plan(*hint, psfs, grid, options, errors)
-                                                              : kept_zones(*hint, psfs, grid, options))
+    if (std::optional<ProductPlan> plan = hint->inner.empty()
+                                              ? kept_plan(*hint, psfs, grid, options, known.errors)
+                                              : kept_zones(*hint, psfs, grid, options))
       return plan;
-  std::optional<ProductPlan> best = cheapest(psfs, grid, options, errors);
   // To look at zones takes as long as that.
   constexpr double worth_zones_ns = 0.5e9;
-  const bool free = options.tile == 0 && options.nodes == 0 && !options.direct;
-  if (free && (!best || best->total_ns() > worth_zones_ns)) try_zones(psfs, grid, options, best);
-  return best;
+  if (options.tile != 0 || options.nodes != 0 || options.direct) return cheapest(psfs, grid, options, known);
+  std::optional<ProductPlan> best = cheapest(psfs, grid, options, known, worth_zones_ns);
+  if (best && best->total_ns() <= worth_zones_ns) return best;
+  try_zones(psfs, grid, options, best);
+  const double most_ns = best ? best->total_ns() : INFINITY;
+  std::optional<ProductPlan> one_zone = cheapest(psfs, grid, options, known, most_ns);
+  return one_zone && one_zone->total_ns() < most_ns ? one_zone : best;
 }
 
 ProductPlan plan_blended(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options) {
