@@ -46,6 +46,14 @@ interface Column {
   empty: string;
 }
 
+/** A number in as many digits as a column holds, which has no room for a tenth of them more. */
+function fitting(value: number): string {
+  const room = 7, fewest = 3;
+  let digits = room;
+  while (digits > fewest && shown(value, digits).length > room) --digits;
+  return shown(value, digits).replace("−", "-");
+}
+
 /** Stands for coatings that differ. */
 const keptCoating = "\u0000";
 
@@ -178,7 +186,8 @@ export class TableView {
         field.value = field.dataset.shown = String(next);
       }
     });
-    field.addEventListener("focus", () => field.select());
+    field.addEventListener("focus", () => { this.refresh(true); field.select(); });
+    field.addEventListener("blur", () => this.refresh());
     const pin = h("button", {type: "button", class: "pin", tabindex: "-1", title: "a slider for this number", "aria-label": `pin ${label}`,
       onclick: () => { this.listener.pinned(path); this.refresh(); }}, "•");
     return h("span", {class: "cell"}, field, pin);
@@ -296,7 +305,8 @@ export class TableView {
       const [, index, rest] = /\[(\d+)\]\.(.+)/.exec(path)!;
       const surface: any = lens.surfaces[Number(index)] ?? {};
       const value = rest.startsWith("asphere.") ? surface.asphere?.[rest.slice(8)] : surface[rest];
-      const text = value === null || value === undefined || (rest === "conic" && value === 0) ? "" : shown(value, 7).replace("−", "-");
+      const text = value === null || value === undefined || (rest === "conic" && value === 0) ? ""
+          : field === document.activeElement ? String(Number(value.toPrecision(12))) : fitting(value);
       field.parentElement!.classList.toggle("pinned", this.listener.isPinned(path));
       if (field.dataset.shown === text && field.value === text) return;
       field.value = field.dataset.shown = text;

@@ -27,7 +27,7 @@ export const terms: Record<string, Term> = {
   "efl": {title: "Focal length", text: "The effective focal length: an object at infinity at an angle θ is imaged at f·tan θ from the axis."},
   "petzval": {title: "Petzval radius", text: "Curvature of the image that a lens free of astigmatism would have. A flat sensor wants it large."},
   "focus": {title: "Focus", text: "Where the sensor stands: as the prescription has it, sharp where the scene is, sharp at a distance, or where spots are least."},
-  "defocus": {title: "Sensor shift", text: "The sensor moved away from the lens after focusing. Depth of focus is about twice the wavelength times the f-number squared.",
+  "defocus": {title: "Sensor shift", text: "The sensor moved away from the lens after focusing. The depth of focus, to either side, is about twice the wavelength times the f-number squared.",
     drawing: [["glass", lensShape], ["ray", "M4 18h56L130 36L156 43M4 54h56L130 36L156 29"], ["mark", "M130 12v48"], ["stop", "M146 12v48"]]},
   "psf": {title: "Point-spread function", text: "The image of a point of light. The picture is the sum of these. Click on the picture to choose the place; the shape is turned as it lies there.",
     drawing: [["glass", lensShape], ["ray", "M4 36L60 18L150 40M4 36L60 54L150 32M4 36h146"], ["mark", "M150 20v32"]]},

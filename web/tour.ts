@@ -20,7 +20,7 @@ export const exercises: {title: string; lens: string; plot: string; scene?: stri
     question: "Which colour is in focus nearest to the lens, and why?"},
 ];
 
-/** The card of the tour; an exercise at a time. */
+/** The strip of the tour below the views, none of which it covers; an exercise at a time. */
 export class Tour {
   private card: HTMLElement | null = null;
   private at = 0;
@@ -34,7 +34,7 @@ export class Tour {
       return;
     }
     this.card = h("aside", {class: "tour", "aria-label": "exercises"});
-    document.body.append(this.card);
+    document.querySelector("body > footer")!.before(this.card);
     this.show(this.at);
   }
 
@@ -43,9 +43,10 @@ export class Tour {
     const exercise = exercises[this.at];
     this.start(exercise);
     this.card?.replaceChildren(
-        h("header", {}, h("small", {}, `Exercise ${this.at + 1} of ${exercises.length}`), h("button", {type: "button", class: "icon-button", "aria-label": "close the tour", onclick: () => this.toggle()}, "×")),
-        h("h3", {}, exercise.title), h("ol", {}, ...exercise.steps.map(step => h("li", {}, step))), h("p", {}, exercise.question),
-        h("footer", {}, h("button", {type: "button", class: "text-button", id: "tour-back", onclick: () => this.show(this.at - 1)}, "Back"),
-            h("button", {type: "button", class: "text-button primary", id: "tour-next", onclick: () => this.show(this.at + 1)}, "Next")));
+        h("header", {}, h("small", {}, `Exercise ${this.at + 1} of ${exercises.length}`), h("h3", {}, exercise.title)),
+        h("ol", {}, ...exercise.steps.map(step => h("li", {}, step))), h("p", {}, exercise.question),
+        h("div", {class: "steps"}, h("button", {type: "button", class: "text-button", id: "tour-back", onclick: () => this.show(this.at - 1)}, "Back"),
+            h("button", {type: "button", class: "text-button primary", id: "tour-next", onclick: () => this.show(this.at + 1)}, "Next"),
+            h("button", {type: "button", class: "icon-button", "aria-label": "close the tour", onclick: () => this.toggle()}, "×")));
   }
 }

@@ -494,6 +494,21 @@ class LivePage(unittest.TestCase):
             self.assertIn(word, report)
         self.assertGreater(report.count('class="plot"'), 10)
 
+    def test_numbers_fit_their_column_and_are_whole_when_they_are_typed_into(self):
+        self.change_shows(CHOOSE, "lens", "double-gauss")
+        self.browser.until("the lens", lambda: self.browser.session()["lensName"] == "double-gauss")
+        whole = self.browser.session()["lens"]["surfaces"][1]["radius_mm"]
+        field = self.browser.driver.find_element(By.CSS_SELECTOR, '[data-path="surfaces[1].radius_mm"]')
+        text = lambda: field.get_property("value")
+        self.assertLessEqual(len(text()), 7)
+        self.assertLess(abs(float(text()) / whole - 1), 1e-4)
+        self.assertNotEqual(float(text()), whole)
+        field.click()
+        self.assertEqual(float(text()), whole)
+        field.send_keys(Keys.TAB)
+        self.assertLessEqual(len(text()), 7)
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["radius_mm"], whole, "nothing was typed")
+
     def test_before_and_after_theme_and_tour(self):
         self.browser.run("document.getElementById('before').click()")
         self.assertTrue(self.browser.run("return !document.querySelector('.divider').hidden"))
@@ -507,6 +522,9 @@ class LivePage(unittest.TestCase):
         self.browser.run("document.getElementById('theme').click()")
         self.browser.run("document.getElementById('tour').click()")
         self.browser.until("the lens of the exercise", lambda: self.browser.session()["lensName"] == "dgauss-50mm")
+        strip, views = self.browser.run("return ['.tour', 'main'].map(each => document.querySelector(each).getBoundingClientRect().toJSON())")
+        self.assertGreaterEqual(strip["top"], views["bottom"], "the exercise covers nothing that it asks to look at")
+        self.assertLess(strip["height"], 0.2 * 720)
         self.browser.run("document.getElementById('tour').click()")
 
     def test_moves_take_no_memory_for_ever(self):
