@@ -256,7 +256,8 @@ struct KnownLayouts {
 std::optional<ProductPlan> cheapest(const PsfField& psfs, const SourceGrid& grid,
                                     const ProductOptions& options, KnownLayouts& known,
                                     double most_ns = INFINITY) {
-  auto& [errors, failed, served] = known;
+  LayoutErrors& errors = known.errors;
+  std::vector<ProductPlan>&failed = known.failed, &served = known.served;
   const double limit = options.layout_given() ? INFINITY : caution * options.tolerance;
   const auto serves = [&](ProductPlan& plan) {
     plan.error_at_places = errors.at_places(plan.tile, plan.nodes, limit);
