@@ -191,7 +191,7 @@ TEST(BenchRender, EndsWithAllPixelsAndBandsOnceTheyAreAsQuiet) {
   while (finest["quality"] != "finest") {
     finest = page.next("picture");
     if (!full.is_null()) {
-      // Both have as many pixels: with fewer rays the picture would be noisier than the one before.
+      // Both have as many pixels: with fewer rays the picture would be noisier than the full one.
       EXPECT_GE(finest["samples"], full["samples"]);
     }
     if (finest["quality"] == "full") full = finest, of_full = mean_colour();

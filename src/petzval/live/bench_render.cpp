@@ -77,7 +77,7 @@ void BenchRender::show(const BenchState& state, const Camera& camera, const std:
     };
     PictureWatch watch;
     if (!preview) {
-      // The finest picture replaces the full one when it is no noisier: with as many rays in each area.
+      // The finest picture replaces the full one when it has as many rays in each area of the sensor.
       const double from = finest ? render_full.samples * full_.pixels() / shot.pixels() : 0;
       watch.every_s = between_pictures_s;
       watch.show = [&, from](const Rendering& so_far, bool stopped) {
