@@ -10,10 +10,10 @@ TEST(Film, OfManyPixelsIsGivenUpWhileItIsLaidOut) {
   int questions = 0;
   Context context;
   context.progress = [&](double, const std::string&) { return ++questions < 2; };
-  // 14.7 GiB, of which a few pieces are touched.
+  // 2.1 GiB of light, of which a few pieces are touched.
   const PixelWindow large{0, 0, 6000, 4000};
   EXPECT_THROW(
-      run_within(context, [&](const ProgressCallback&) { Film(large, 30, 5, false, Film::Half::none); }),
+      run_within(context, [&](const ProgressCallback&) { Film(large, 6, 1, false, Film::Half::none); }),
       Cancelled);
 }
 
