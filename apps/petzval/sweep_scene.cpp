@@ -88,14 +88,14 @@ Widths known_widths(const std::vector<std::vector<std::string>>& command_lines, 
 void note_width(const Widths& widths, const std::string& angle, const Shared& shared) {
   constexpr double same = 1 + 1e-6;
   if (widths.greatest_deg <= widths.least_deg * same)
-    return note(shared, fmt::format("the scene is made {} degrees wide, to fill the frame and the margin of "
-                                    "the PSF (--scene-angle sets another)",
-                                    angle));
-  note(shared,
-       fmt::format("the scene is made {} degrees wide at all points, to fill the widest frame and the "
-                   "margin of its PSF; the narrowest would need {:.3g} (--scene-width each fits the "
-                   "scene to each frame, --scene-angle sets another width)",
-                   angle, widths.least_deg));
+    return note(
+        shared,
+        fmt::format("the scene is made {} degrees wide, to fill the frame (--scene-angle sets another)",
+                    angle));
+  note(shared, fmt::format("the scene is made {} degrees wide at all points, to fill the widest frame; the "
+                           "narrowest would need {:.3g} (--scene-width each fits the "
+                           "scene to each frame, --scene-angle sets another width)",
+                           angle, widths.least_deg));
 }
 
 }  // namespace

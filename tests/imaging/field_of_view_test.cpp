@@ -24,28 +24,39 @@ Scene bright_scene(int columns, int rows, double angle_deg) {
   return scene;
 }
 
-/// With which the margin is widest.
-ImagingOptions one_cell() {
+ImagingOptions with(Surround surround) {
   ImagingOptions options;
-  options.supersample = 1;
+  options.surround = surround;
   return options;
 }
 
-TEST(CoveringAngle, JustCoversTheFrameAndItsMargin) {
+TEST(CoveringAngle, IsThatOfTheFrameAndALittleBeyond) {
   const LensDataTable table = rectilinear_table();
   const SensorGeometry sensor{120, 90, 10};
-  for (const auto& [columns, rows] : {std::pair{400, 300}, {300, 300}, {900, 300}}) {
-    Scene scene = bright_scene(columns, rows, 5);
-    const double angle = covering_angle_deg(scene, table, sensor, one_cell());
-    // The PSF reaches 3 cells, its window 3, the pixel filter 2, the source filter 1: 138 × 108 cells of 10
-    // µm at 6 mm. The table's curve is good to 1e-4.
-    const double half = std::max(0.69, 0.54 * columns / rows) / 6;
-    EXPECT_NEAR(angle, 2 * degrees(std::atan(half)), 1e-4 * angle);
+  for (const auto& [columns, rows] : {std::pair{400, 300}, {300, 300}, {900, 300}})
+    for (const auto& [surround, beyond] : {std::pair{Surround::error, 1.02}, {Surround::extend, 1.0}}) {
+      const double angle = covering_angle_deg(bright_scene(columns, rows, 5), table, sensor, with(surround));
+      // 120 × 90 pixels of 10 µm at 6 mm. The table's curve is good to 1e-4.
+      const double half = beyond * std::max(0.60, 0.45 * columns / rows) / 6;
+      EXPECT_NEAR(angle, 2 * degrees(std::atan(half)), 1e-4 * angle);
+    }
+}
+
+TEST(CoveringAngle, LeavesNothingToSayOfAFrameThatIsCovered) {
+  const LensDataTable table = rectilinear_table();
+  const SensorGeometry sensor{120, 90, 10};
+  for (const Surround surround : {Surround::extend, Surround::zero}) {
+    const ImagingOptions options = with(surround);
+    Scene scene = bright_scene(400, 300, 5);
+    const double angle = covering_angle_deg(scene, table, sensor, options);
+    ImagingReport report;
     scene.set_horizontal_angle_deg(angle);
-    EXPECT_NO_THROW(form_image(scene, table, sensor, one_cell()));
-    EXPECT_NO_THROW(form_image(scene, table, sensor, {}));
-    scene.set_horizontal_angle_deg(angle * 0.999);
-    EXPECT_THROW(form_image(scene, table, sensor, one_cell()), InputError);
+    form_image(scene, table, sensor, options, {}, &report);
+    EXPECT_TRUE(report.notes.empty()) << report.notes.front();
+    scene.set_horizontal_angle_deg(0.999 * angle);
+    form_image(scene, table, sensor, options, {}, &report);
+    ASSERT_FALSE(report.notes.empty());
+    EXPECT_NE(report.notes.front().find("the frame sees 11.42°"), std::string::npos) << report.notes.front();
   }
 }
 
@@ -54,15 +65,10 @@ TEST(NaturalSensor, HasTheScenesSamplesAndAsManyAsItCovers) {
   const Scene scene = bright_scene(400, 300, 20);
   const SensorGeometry sensor = natural_sensor(scene, table, {});
   EXPECT_NEAR(sensor.pitch_um, 6000 * 2 * std::tan(radians(10.0)) / 400, 1e-9);
-  // Without distortion the frame loses the margin of the PSF on each side, ⌈(22.6 + 0.25) µm / 5.29 µm⌉ = 5,
-  // and those of its window, the pixel filter and the source filter, 3, 2 and 1. Of 300 rows 278 are left,
-  // and of columns as many as that shape has.
-  EXPECT_NEAR(sensor.rows, 278, 1);
-  EXPECT_NEAR(sensor.columns, 4.0 / 3 * sensor.rows, 1);
-  EXPECT_NO_THROW(form_image(scene, table, sensor, {}));
-  ImagingOptions unblurred;
-  unblurred.method = BlurMethod::none;
-  EXPECT_GE(natural_sensor(scene, table, unblurred).columns, 399);
+  // Without distortion, 2 % of half the frame lies beyond it on each side: 400 / 1.02 columns.
+  EXPECT_EQ(sensor.columns, 392);
+  EXPECT_EQ(sensor.rows, 294);
+  EXPECT_GE(natural_sensor(scene, table, with(Surround::extend)).columns, 399);
 }
 
 TEST(NaturalSensor, FollowsTheMagnificationOfFiniteObjects) {
@@ -78,7 +84,7 @@ TEST(NaturalSensor, FollowsTheMagnificationOfFiniteObjects) {
 
 TEST(NaturalSensor, RefusesLensesAndScenesThatGiveNone) {
   LensDataTable table = rectilinear_table();
-  EXPECT_THROW(natural_sensor(bright_scene(4, 4, 0.01), table, {}), InputError) << "smaller than the PSF";
+  EXPECT_THROW(natural_sensor(bright_scene(1, 1, 0.01), table, {}), InputError) << "less than a pixel";
   table.first_order.efl_mm = INFINITY;
   EXPECT_THROW(natural_sensor(bright_scene(400, 300, 20), table, {}), InputError) << "afocal";
 }

@@ -39,15 +39,4 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
   return plans;
 }
 
-SeenExtent seen_extent(const std::vector<BandPlan>& plans, const SensorGeometry& frame) {
-  SeenExtent seen;
-  for (const BandPlan& plan : plans) {
-    const SeenExtent band = seen_extent(plan.map, grown(frame, plan.margin + source_margin(plan.margin)));
-    seen.columns = std::max(seen.columns, band.columns);
-    seen.rows = std::max(seen.rows, band.rows);
-    seen.radius = std::max(seen.radius, band.radius);
-  }
-  return seen;
-}
-
 }  // namespace petzval

@@ -19,9 +19,6 @@ struct BandPlan {
 std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
                                  const ImagingOptions& options);
 
-/// The most that any band sees of the scene, its margin included.
-SeenExtent seen_extent(const std::vector<BandPlan>& plans, const SensorGeometry& frame);
-
 double half_diagonal_mm(const SensorGeometry& grid);
 
 }  // namespace petzval

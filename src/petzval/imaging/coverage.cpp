@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/coverage.h>
+#include <petzval/imaging/field_of_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,8 @@
 namespace petzval {
 
 namespace {
+
+constexpr double percent = 100;
 
 /// What a turned camera sees, from the middle of the scene: a rectangle becomes a quadrangle, whose corners
 /// lie farthest.
@@ -32,12 +35,10 @@ SeenExtent aimed(SeenExtent seen, const AimedPlane& plane) {
 
 }  // namespace
 
-void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
-                    Surround surround, std::vector<std::string>& notes, const SceneAim& aim) {
+void check_coverage(const Scene& scene, const SeenExtent& wanted, Surround surround,
+                    std::vector<std::string>& notes, const SceneAim& aim) {
   if (scene.is_panorama()) return;  // it is everywhere
-  const SeenExtent seen = aimed(seen_extent(plans, frame), {aim, scene});
-  int margin = 0;
-  for (const BandPlan& plan : plans) margin = std::max(margin, plan.margin);
+  const SeenExtent seen = aimed(wanted, {aim, scene});
   constexpr double rounding = 1 + 1e-9;
   if (2 * seen.columns <= scene.columns() * rounding && 2 * seen.rows <= scene.rows() * rounding) return;
 
@@ -47,14 +48,13 @@ void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, cons
   const double wide = full_angle(seen.columns), high = full_angle(seen.rows),
                across = full_angle(seen.radius);
   const auto short_by = [](double needed, double have) { return std::max(0.0, needed - have); };
+  const double margin = margin_of(surround);
   const std::string shortfall = fmt::format(
-      "the scene covers {:.2f}° × {:.2f}° ({:.2f}° across its corners), the frame with a margin of {} cells "
-      "for the "
-      "PSF sees {:.2f}° × {:.2f}° ({:.2f}°): it falls short by {:.2f}° horizontally, {:.2f}° vertically and "
-      "{:.2f}° "
-      "diagonally",
-      scene.horizontal_angle_deg(), scene.vertical_angle_deg(), scene.diagonal_angle_deg(), margin, wide,
-      high, across, short_by(wide, scene.horizontal_angle_deg()), short_by(high, scene.vertical_angle_deg()),
+      "the scene covers {:.2f}° × {:.2f}° ({:.2f}° across its corners), the frame{} sees {:.2f}° × {:.2f}° "
+      "({:.2f}°): it falls short by {:.2f}° horizontally, {:.2f}° vertically and {:.2f}° diagonally",
+      scene.horizontal_angle_deg(), scene.vertical_angle_deg(), scene.diagonal_angle_deg(),
+      margin > 0 ? fmt::format(" and {:g} % beyond", percent * margin) : "", wide, high, across,
+      short_by(wide, scene.horizontal_angle_deg()), short_by(high, scene.vertical_angle_deg()),
       short_by(across, scene.diagonal_angle_deg()));
   if (surround == Surround::error)
     throw InputError(

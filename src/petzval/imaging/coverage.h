@@ -10,10 +10,11 @@
 
 namespace petzval {
 
-/// Adds a note of how far the scene falls short of the field, margin included. A panorama never does.
-/// \throws InputError if it does and nothing was said about its surroundings.
-void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
-                    Surround surround, std::vector<std::string>& notes, const SceneAim& aim = {});
+/// Adds a note of how far the scene falls short of what a frame sees of it (seen_extent(),
+/// margin_of(surround) included). A panorama never does. \throws InputError if it does and nothing was said
+/// about its surroundings.
+void check_coverage(const Scene& scene, const SeenExtent& wanted, Surround surround,
+                    std::vector<std::string>& notes, const SceneAim& aim = {});
 
 /// Adds a note if the lens data table ends before the corners of the frame, or before what lights them.
 void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& frame,

@@ -13,21 +13,24 @@ namespace petzval {
 
 namespace {
 
-/// The plans of both ends, for frames up to this one.
-std::vector<BandPlan> plan_ends(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
-                                const ImagingOptions& options, const DepthOptions& depth) {
+/// chief_ray_maps() of both ends, for frames up to this one.
+std::vector<SceneMap> maps_of_ends(const Scene& scene, const DepthCamera& camera,
+                                   const SensorGeometry& sensor, const ImagingOptions& options,
+                                   const DepthOptions& depth) {
   const DefocusLaw law(camera.lens);
   const DepthLayers layers = lay_depth_layers(scene, camera.lens, law, sensor.pitch_um, depth);
-  std::vector<BandPlan> plans;
+  const double half_diagonal_mm = (1 + margin_of(options.surround)) * sensor.half_diagonal_mm();
+  std::vector<SceneMap> maps;
   for (const std::size_t end : {layers.layers.size() - 1, std::size_t{0}}) {
     LensDataTable table = layer_table(camera, layers, end, sensor.pitch_um, options.product.tolerance);
     const LayerScene layer(scene, layers, end, law.pupil_to_sensor_mm(), sensor.pitch_um);
-    for (BandPlan& plan : plan_layer(scene, layer, table, options.cells_of(sensor), options))
-      plans.push_back(std::move(plan));
+    for (const double wavelength_nm : scene.wavelengths_nm())
+      maps.push_back(std::move(
+          chief_ray_maps(layer.blank(wavelength_nm), table, half_diagonal_mm, options.fit).front()));
     keep_layer_table(camera, layers, end, sensor.pitch_um, std::move(table));
     if (layers.layers.size() == 1) break;
   }
-  return plans;
+  return maps;
 }
 
 /// tan(object angle) from one sample to the next, seen from the entrance pupil.
@@ -54,21 +57,15 @@ double natural_depth_pitch_um(const Scene& scene, const Lens& lens) {
 double covering_depth_angle_deg(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
                                 const ImagingOptions& options, const DepthOptions& depth) {
   return covering_angle_deg(
-      scene, seen_extent(plan_ends(scene, camera, sensor, options, depth), options.cells_of(sensor)));
+      scene, seen_extent(maps_of_ends(scene, camera, sensor, options, depth), sensor, options.surround));
 }
 
 SensorGeometry natural_depth_sensor(const Scene& scene, const DepthCamera& camera,
                                     const ImagingOptions& options, const DepthOptions& depth) {
   const double pitch_um = natural_depth_pitch_um(scene, camera.lens);
   const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
-  const auto frame =
-      largest_covered_frame(scene, pitch_um, plan_ends(scene, camera, whole, options, depth), options);
-  if (!frame)
-    throw InputError(
-        fmt::format("the blur alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: "
-                    "a `sensor` with `surround` extend would do",
-                    scene.columns(), scene.rows(), pitch_um));
-  return *frame;
+  return largest_covered_frame(scene, pitch_um, maps_of_ends(scene, camera, whole, options, depth),
+                               options.surround);
 }
 
 }  // namespace petzval

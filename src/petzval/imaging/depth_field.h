@@ -9,7 +9,7 @@ namespace petzval {
 /// Pixels as large as the image of a sample whose depth is in focus, on the axis.
 double natural_depth_pitch_um(const Scene& scene, const Lens& lens);
 
-/// As covering_angle_deg(), for the layers at both ends of the scene, whose blur reaches farthest.
+/// As covering_angle_deg(), for the layers at both ends of the scene.
 double covering_depth_angle_deg(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
                                 const ImagingOptions& options, const DepthOptions& depth);
 

@@ -7,6 +7,7 @@
 #include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/coverage.h>
 #include <petzval/imaging/depth_image.h>
+#include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_frame.h>
 #include <petzval/imaging/layer_plan.h>
 #include <petzval/imaging/layer_stack.h>
@@ -62,7 +63,8 @@ class DepthImaging {
       const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
       const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
       std::vector<std::string> notes;
-      check_coverage(planar.blank(scene_.wavelengths_nm().front()), plans, frame_, options_.surround, notes);
+      const Scene blank = planar.blank(scene_.wavelengths_nm().front());
+      check_coverage(blank, seen_extent(blank, table, sensor_, options_), options_.surround, notes);
       if (notes.empty()) note_dark_corners(plans, sensor_, notes);
       for (const std::string& note : notes)
         says().notes.push_back(

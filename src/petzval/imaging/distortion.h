@@ -16,7 +16,7 @@ namespace petzval {
 
 /// What is seen beyond the edges of a scene that does not cover the field.
 enum class Surround {
-  error,  ///< nothing may be: InputError
+  error,  ///< InputError, unless it covers the frame and margin_of() beyond; from there as with `extend`
   zero,   ///< darkness
   extend  ///< the nearest sample of the scene
 };

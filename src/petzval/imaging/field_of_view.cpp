@@ -2,15 +2,43 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/field_of_view.h>
-#include <petzval/imaging/psf_tails.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace petzval {
+
+namespace {
+
+SensorGeometry with_margin(SensorGeometry frame, Surround surround) {
+  frame.pitch_um *= 1 + margin_of(surround);
+  return frame;
+}
+
+}  // namespace
+
+std::vector<SceneMap> chief_ray_maps(const Scene& scene, const LensDataTable& table, double half_diagonal_mm,
+                                     RadialFit fit) {
+  const LightCentres at_chief_rays;
+  std::vector<SceneMap> maps;
+  for (const double wavelength_nm : scene.wavelengths_nm())
+    maps.emplace_back(table, at_chief_rays, fit, wavelength_nm, scene, half_diagonal_mm);
+  return maps;
+}
+
+SeenExtent seen_extent(const std::vector<SceneMap>& maps, const SensorGeometry& sensor, Surround surround) {
+  SeenExtent seen;
+  for (const SceneMap& map : maps) seen.include(seen_extent(map, with_margin(sensor, surround)));
+  return seen;
+}
+
+SeenExtent seen_extent(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                       const ImagingOptions& options) {
+  const double half_diagonal_mm = with_margin(sensor, options.surround).half_diagonal_mm();
+  return seen_extent(chief_ray_maps(scene, table, half_diagonal_mm, options.fit), sensor, options.surround);
+}
 
 double covering_angle_deg(const Scene& scene, const SeenExtent& seen) {
   const double half_columns = std::max(seen.columns, seen.rows * scene.columns() / scene.rows());
@@ -27,10 +55,7 @@ double covering_angle_deg(const Scene& scene, const SeenExtent& seen) {
 
 double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                           const ImagingOptions& options) {
-  const SensorGeometry frame = options.cells_of(sensor);
-  const std::optional<TailSplit> split = split_table(table, sensor, options);
-  return covering_angle_deg(
-      scene, seen_extent(plan_bands(scene, split ? split->sharp : table, frame, options), frame));
+  return covering_angle_deg(scene, seen_extent(scene, table, sensor, options));
 }
 
 double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
@@ -48,16 +73,20 @@ SensorGeometry frame_like(const Scene& scene, int columns, double pitch_um) {
   return {columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
 }
 
-std::optional<SensorGeometry> largest_covered_frame(const Scene& scene, double pitch_um,
-                                                    const std::vector<BandPlan>& plans,
-                                                    const ImagingOptions& options) {
+SensorGeometry largest_covered_frame(const Scene& scene, double pitch_um, const std::vector<SceneMap>& maps,
+                                     Surround surround) {
   int fits = 0, too_large = scene.columns() + 1;
   while (too_large - fits > 1) {
     const int middle = fits + (too_large - fits) / 2;
-    const SeenExtent seen = seen_extent(plans, options.cells_of(frame_like(scene, middle, pitch_um)));
+    const SeenExtent seen = seen_extent(maps, frame_like(scene, middle, pitch_um), surround);
     (2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows() ? fits : too_large) = middle;
   }
-  if (fits < 1) return {};
+  if (fits < 1)
+    throw InputError(
+        fmt::format("the scene, {} × {} samples, is less than a pixel of its own with the light about it: a "
+                    "larger `scene.horizontal_angle_deg`, or a `sensor` with `surround` zero or extend, "
+                    "would do",
+                    scene.columns(), scene.rows()));
   return frame_like(scene, fits, pitch_um);
 }
 
@@ -65,17 +94,10 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
   if (scene.is_panorama())
     throw InputError("a panorama ends nowhere, and so would its image: a `sensor` is needed");
   const double pitch_um = natural_pitch_um(scene, table.first_order);
-  const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
-  const std::optional<TailSplit> split = split_table(table, whole, options);
-  const auto frame = largest_covered_frame(
-      scene, pitch_um, plan_bands(scene, split ? split->sharp : table, options.cells_of(whole), options),
-      options);
-  if (!frame)
-    throw InputError(
-        fmt::format("the PSF alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: a "
-                    "larger `scene.horizontal_angle_deg` or a `sensor` would do",
-                    scene.columns(), scene.rows(), pitch_um));
-  return *frame;
+  const double half_diagonal_mm =
+      with_margin(frame_like(scene, scene.columns(), pitch_um), options.surround).half_diagonal_mm();
+  return largest_covered_frame(scene, pitch_um, chief_ray_maps(scene, table, half_diagonal_mm, options.fit),
+                               options.surround);
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/coverage.h>
+#include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/formation.h>
 #include <petzval/imaging/image_frame.h>
 #include <petzval/imaging/positive_light.h>
@@ -143,10 +144,11 @@ void Formation::form(std::span<const AimedLight> lights, const TakeBand& take,
 }
 
 void Formation::check_aims(std::span<const AimedLight> lights, std::vector<std::string>& notes) const {
+  const SeenExtent seen = seen_extent(scene, table, sensor, options);
   for (const AimedLight& light : lights)
     for (const AimedLight::Share& share : light.shares) {
       share.aim.check(scene);
-      check_coverage(scene, plans, frame, options.surround, notes, share.aim);
+      check_coverage(scene, seen, options.surround, notes, share.aim);
     }
   notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
 }

@@ -6,6 +6,7 @@
 #include <petzval/imaging/plane_sampling.h>
 #include <petzval/sensor/sensor.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -33,6 +34,12 @@ struct ScenePart {
 /// corner.
 struct SeenExtent {
   double columns = 0, rows = 0, radius = 0;
+
+  void include(const SeenExtent& other) {
+    columns = std::max(columns, other.columns);
+    rows = std::max(rows, other.rows);
+    radius = std::max(radius, other.radius);
+  }
 };
 
 /// One wavelength of a lens in front of one scene. Made by field height (HeightLook) or over the frame in two

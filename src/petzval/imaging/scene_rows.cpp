@@ -33,7 +33,7 @@ struct Stretch {
 
  private:
   static double share_inside(double middle, double length, int count, Surround surround) {
-    if (surround == Surround::extend) return 1;
+    if (surround != Surround::zero) return 1;
     const double from = std::max(0.0, middle - length / 2), to = std::min(double(count), middle + length / 2);
     return std::max(0.0, to - from) / length;
   }
@@ -164,7 +164,7 @@ std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const
   constexpr double around = 1.5;  // half a cell, and the neighbour to whose centre radiance runs
   const double middle = scene_.columns() / 2.0, centre = scene_.rows() / 2.0;
   return flat_->value_in(middle + left - around, middle + right + around, centre + top - around,
-                         centre + bottom + around, surround_ == Surround::extend);
+                         centre + bottom + around, surround_ != Surround::zero);
 }
 
 bool SceneRows::is_inside(const RowView& cells, std::size_t column) const {

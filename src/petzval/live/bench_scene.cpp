@@ -103,9 +103,8 @@ void place_bench_scene(Scene& scene, const TableCamera& optics, const ImageOptio
   std::optional<double> distance_m;
   if (const auto distance_mm = object_to_sensor_mm(optics.table)) distance_m = *distance_mm / mm_per_m;
   scene.set_distance_m(distance_m);
-  ImagingOptions widest = options.imaging;
-  widest.supersample = 1;
-  scene.set_horizontal_angle_deg(covering_angle_deg(scene, optics.table, optics.sensor->geometry, widest));
+  scene.set_horizontal_angle_deg(
+      covering_angle_deg(scene, optics.table, optics.sensor->geometry, options.imaging));
 }
 
 }  // namespace petzval

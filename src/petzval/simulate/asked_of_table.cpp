@@ -10,8 +10,9 @@
 namespace petzval {
 
 std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
-  constexpr double pixels_beyond = 8;
-  const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
+  constexpr double pixels_beyond = 8, beyond = margin_of(Surround::error);
+  const double beyond_mm =
+      std::max(pixels_beyond * frame.pitch_um * mm_per_um, beyond * frame.half_diagonal_mm());
   return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
 }
 

@@ -191,7 +191,8 @@ double image_height_mm(const Scene& scene, double pitch_um, const std::optional<
   const double half_diagonal_mm = sensor
                                       ? sensor->geometry.half_diagonal_mm()
                                       : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
-  return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
+  return half_diagonal_mm +
+         std::max(pixels_beyond * pitch_um * mm_per_um, margin_of(Surround::error) * half_diagonal_mm);
 }
 
 /// Every `step`th of the wavelengths, and the last.
@@ -332,23 +333,14 @@ ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, Ta
   return {std::move(scene), std::move(camera.table), {}, {}, std::move(options), {}};
 }
 
-/// Where the scene may end in the margin of the PSFs, the frame alone is filled.
-bool may_end_in_margin(const ImagePlan& plan) {
-  return !plan.depth && plan.options.imaging.surround != Surround::error;
-}
-
-/// With the margin of PSFs that one cell a pixel needs, the widest: a picture more finely sampled shows the
-/// same of the scene.
 double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
-  ImagingOptions options = plan.options.imaging;
-  if (may_end_in_margin(plan)) options.method = BlurMethod::none;
-  if (options.method != BlurMethod::none) options.supersample = 1;
+  const ImagingOptions& options = plan.options.imaging;
   return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, options, plan.options.depth)
                     : covering_angle_deg(plan.scene, plan.table, sensor, options);
 }
 
-/// A chart or a photograph without an angle of its own fills the frame, with the margin of the PSFs or (where
-/// it may end there) alone; without a sensor the frame follows the scene.
+/// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
+/// the scene.
 void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest* request,
                        const Context& context, ImagingMemory* memory) {
   const std::optional<Sensor>& sensor = sensor_of(optics);
@@ -364,7 +356,6 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
   }
   plan.frame = sensor->geometry;
   if (!request || !is_open(*request) || has_width(*request)) return;
-  if (!may_end_in_margin(plan) && !fills_frame(*request, optics, plan.options)) return;
   const double fills_deg = filling_angle_deg(plan, plan.frame);
   const double angle_deg = std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0));
   if (!is_drawn_to_angle(request->name, request->options))
