@@ -99,6 +99,13 @@ OutputOptions ShotChoice::options() const {
   return options;
 }
 
+void ShotChoice::refuse_unused(const CLI::App& command, bool developed, bool insettable) const {
+  if (const std::string option = given_option(command, developing); !developed && !option.empty())
+    throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));
+  if (!insets.empty() && !insettable)
+    throw InputError("--inset has no effect: no picture of light (.png, .tif) is asked for");
+}
+
 OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
                                   const std::vector<std::string>& outputs, const CLI::App& command) const {
   OutputOptions options = this->options();
@@ -112,10 +119,7 @@ OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
   if (const std::string option = given_option(command, exposing, light);
       !raw && !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: {}", option, why_not_exposed(sensor)));
-  if (const std::string option = given_option(command, developing); !developed && !option.empty())
-    throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));
-  if (!insets.empty() && !std::ranges::any_of(outputs, is_picture_name))
-    throw InputError("--inset has no effect: no picture (.png) is asked for");
+  refuse_unused(command, developed, std::ranges::any_of(outputs, is_picture_name));
   for (const char* option : {"--white", "--display"})
     if (const CLI::Option* given = command.get_option_no_throw(option);
         shows_light_ && given->count() > 0 && develops(options, sensor))

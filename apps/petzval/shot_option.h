@@ -33,6 +33,9 @@ struct ShotChoice {
   /// outputs and options that the sensor makes no sense of.
   OutputOptions checked(const std::optional<Sensor>& sensor, const std::vector<std::string>& outputs,
                         const CLI::App& command) const;
+  /// \throws InputError for an option of the development without a developed picture, and for an inset
+  /// without a picture that takes one.
+  void refuse_unused(const CLI::App& command, bool developed, bool insettable) const;
 
  private:
   bool shows_light_ = false;

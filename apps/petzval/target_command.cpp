@@ -171,14 +171,14 @@ TargetImage levels_of(const TargetCommand& command, const TargetRequest& request
   return recorded_levels(image, *request.sensor, command.output.shot.sense.options(), context);
 }
 
-TargetRequest request_of(const TargetCommand& command, const Shared& shared) {
+TargetRequest request_of(const TargetCommand& command, const CLI::App& app, const Shared& shared) {
   TargetRequest request;
   if (!command.sensor.empty()) {
     request.sensor = read_sensor(command.sensor);
     request.sensor->require_electronics();
   }
   command.optics.fill(request, shared);
-  command.output.validate();
+  command.output.validate(app);
   Picture picture = picture_of(command);
   request.scene = std::move(picture.scene);
   request.columns = picture.frame.columns, request.rows = picture.frame.rows;
@@ -218,9 +218,9 @@ void print_chart(const TargetCommand& command, const Shared& shared) {
       width, height, scene.polygons.size(), width, height);
 }
 
-void run(const TargetCommand& command, const Shared& shared) {
+void run(const TargetCommand& command, const CLI::App& app, const Shared& shared) {
   if (command.size.ends_with("mm")) return print_chart(command, shared);
-  const TargetRequest request = request_of(command, shared);
+  const TargetRequest request = request_of(command, app, shared);
   if (!command.exact_sfr.empty()) require_extension(command.exact_sfr, {".csv"}, "a table of exact SFRs");
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   const TargetOptions options = target_options(request);
@@ -254,7 +254,7 @@ void add_target_command(CLI::App& app, Shared& shared) {
                   "Synthetic targets of exactly known sharpness: polygons through diffraction and photosites",
                   "petzval target --rectangle 100x100@5 --psf airy --f-number 8 --wavelength 550 "
                   "--pixel-pitch 4.73 -o target.png",
-                  true, [=, &shared] { run(*options, shared); });
+                  true, [options, &shared, &app] { run(*options, *app.get_subcommand("target"), shared); });
   command->add_option("--rectangle", options->rectangle,
                       "A dark rectangle WxH@DEG [pixels, degrees clockwise]");
   command->add_option("--half-plane", options->half_plane_deg,

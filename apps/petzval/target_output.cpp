@@ -75,9 +75,12 @@ void TargetOutput::add_to(CLI::App& command) {
           "does; irradiance, the levels; auto: developed beside a .dng");
 }
 
-void TargetOutput::validate() const {
+void TargetOutput::validate(const CLI::App& command) const {
   for (const std::string& path : paths)
     require_extension(path, {".png", ".tif", ".tiff", ".npy", ".exr", ".dng"}, "a target");
+  const bool developed = std::ranges::any_of(
+      paths, [&](const auto& path) { return is_picture_name(path) && holds_light(path); });
+  shot.refuse_unused(command, developed, developed);
 }
 
 bool TargetOutput::holds_light(const std::string& path) const {

@@ -21,7 +21,8 @@ struct TargetOutput {
   ShotChoice shot;
 
   void add_to(CLI::App& command);
-  void validate() const;
+  /// \param command  what add_to was given. \throws InputError for files and options that a target has not.
+  void validate(const CLI::App& command) const;
   /// Whether a file holds light or what a sensor makes of it: irradiance (.exr), raw files (.dng) and
   /// developed pictures. The others hold levels.
   bool holds_light(const std::string& path) const;

@@ -288,6 +288,14 @@ TEST(Ply, BelievesNoCount) {
           "element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n900000 0 0\n",
           "m.ply"),
       InputError);
+  const auto with_last_count = [](const std::string& count) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property list double float more\nelement face 1\nproperty list uchar int vertex_indices\n"
+           "end_header\n0 0 0 0\n1 0 0 0\n0 1 0 " +
+           count + "\n3 0 1 2\n";
+  };
+  EXPECT_EQ(parse_ply(with_last_count("0"), "m.ply").triangles.size(), 1u);
+  EXPECT_THROW(parse_ply(with_last_count("1e300"), "m.ply"), InputError);
 }
 
 }  // namespace

@@ -47,8 +47,10 @@ TEST(StrokeFont, StrokesHaveTheirWidthAndLettersTheirPlace) {
 TEST(StrokeFont, RefusesWhatHasNoShape) {
   for (const char* text : {"\xc3\xa9", "a_b", "\n", "   ", ""})
     EXPECT_THROW(text_polygons(text, {0, 0}, {20, 0, 0}), InputError) << text;
-  EXPECT_THROW(text_polygons("A", {0, 0}, {0, 0, 0}), InputError);
-  EXPECT_THROW(text_polygons("A", {0, 0}, {NAN, 0, 0}), InputError);
+  for (const double height : {0.0, double{NAN}, 1e308}) {
+    EXPECT_THROW(text_polygons("A", {0, 0}, {height, 0, 0}), InputError);
+    EXPECT_THROW(text_width("Ab", {height, 0, 0}), InputError);
+  }
 }
 
 TEST(TestCharts, AllAreSimplePolygonsWithinTheFrame) {

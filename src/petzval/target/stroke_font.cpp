@@ -170,9 +170,17 @@ Letter letter_of(char character) {
   return {found->second, is_small ? small_scale : 1};
 }
 
+void require_valid(const TextStyle& style) {
+  if (!(style.height_px > 0 && style.height_px <= target_reach_px) || !std::isfinite(style.angle_deg))
+    throw InputError(
+        fmt::format("letters {:g} pixels high at {:g} degrees: a height above 0 and up to {:g} is right",
+                    style.height_px, style.angle_deg, target_reach_px));
+}
+
 }  // namespace
 
 double text_width(const std::string& text, const TextStyle& style) {
+  require_valid(style);
   double width = 0, gap = 0;
   for (const char character : text) {
     const double scale = letter_of(character).scale;
@@ -183,9 +191,7 @@ double text_width(const std::string& text, const TextStyle& style) {
 }
 
 std::vector<Polygon> text_polygons(const std::string& text, Vertex corner, const TextStyle& style) {
-  if (!(style.height_px > 0 && style.height_px <= target_reach_px) || !std::isfinite(style.angle_deg))
-    throw InputError(fmt::format("letters {} pixels high at {} degrees: a positive height is right",
-                                 style.height_px, style.angle_deg));
+  require_valid(style);
   const double unit = style.height_px / grid_height;
   const double c = unit * std::cos(style.angle_deg * pi / 180),
                s = unit * std::sin(style.angle_deg * pi / 180);

@@ -22,7 +22,7 @@ double text_width(const std::string& text, const TextStyle& style);
 
 /// One polygon a stroke (some overlap, all of one level), the upper left corner of the first letter at
 /// `corner`. \throws InputError for a character that has no shape, naming it, text without any stroke, or a
-/// height that is not positive.
+/// height that is not positive or beyond target_reach_px.
 std::vector<Polygon> text_polygons(const std::string& text, Vertex corner, const TextStyle& style);
 
 }  // namespace petzval

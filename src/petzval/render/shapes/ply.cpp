@@ -233,9 +233,8 @@ void read_vertices(const PlyElement& element, PlyBody& body, const std::string& 
     std::array<float, 8> values{};
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
-      std::size_t numbers = 1;
-      if (property.count) numbers = static_cast<std::size_t>(std::max(0.0, body.number(*property.count)));
-      for (std::size_t k = 0; k < numbers; ++k) {
+      const double count = property.count ? body.number(*property.count) : 1;
+      for (double k = 0; k < count; ++k) {
         const double value = body.number(property.type);
         if (slots[p] >= 0) values[static_cast<std::size_t>(slots[p])] = static_cast<float>(value);
       }
