@@ -11,11 +11,10 @@ even light, with its standard error over the seeds: both state light in units of
 import argparse
 import pathlib
 import struct
-import subprocess
 import tempfile
 
 import numpy as np
-from pbrt_beside import luminous_efficiency
+from programs_beside import Pbrt, Petzval
 
 SIZE, CELLS = (64, 48), 12
 GREY = lambda name, value: f'"spectrum {name}" [ 300 {value} 900 {value} ]'
@@ -144,27 +143,11 @@ def write_sky(folder):
     (folder / "sky.hdr").write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {side} +X {side}\n".encode() + pixels.tobytes())
 
 
-def text_of(things, eye, seed=None):
+def text_of(things, eye):
     eye = eye or "0 0.6 -4.5  0 0 0"
-    sampler = f'Sampler "independent" "integer seed" {seed}\nPixelFilter "box" "float xradius" 0.5 "float yradius" 0.5\n' if seed else ""
     return "\n".join([f"LookAt {eye}  0 1 0", 'Camera "perspective" "float fov" 50',
                       f'Film "rgb" "integer xresolution" {SIZE[0]} "integer yresolution" {SIZE[1]}',
-                      'Integrator "volpath" "integer maxdepth" 60', sampler + "WorldBegin", *things, ""])
-
-
-# -------------------------------------------------------------------------------------------------------- programs
-def ours(program, things, eye, samples, seed, folder):
-    (folder / "ours.pbrt").write_text(text_of(things, eye))
-    subprocess.run([program, "render", "ours.pbrt", "--pinhole", "--wavelengths", "400:10:700", "--spp", str(samples), "--seed", str(seed),
-                    "--quiet", "-o", "ours.npy"], check=True, cwd=folder)
-    return np.load(folder / "ours.npy") @ luminous_efficiency(np.arange(400, 701, 10))
-
-
-def theirs(program, things, eye, samples, seed, folder):
-    (folder / "theirs.pbrt").write_text(text_of(things, eye, seed))
-    subprocess.run([program, "--spp", str(samples), "--quiet", "--outfile", "theirs.pfm", "theirs.pbrt"], check=True, cwd=folder, stdout=subprocess.DEVNULL)
-    data = (folder / "theirs.pfm").read_bytes()[-12 * SIZE[0] * SIZE[1]:]  # three lines of text, then floats, the lowest row first
-    return np.frombuffer(data, "<f4").reshape(SIZE[1], SIZE[0], 3)[::-1] @ [0.2126, 0.7152, 0.0722]
+                      'Integrator "volpath" "integer maxdepth" 60', "WorldBegin", *things, ""])
 
 
 def main():
@@ -185,8 +168,8 @@ def main():
             folder = pathlib.Path(folder)
             write_sky(folder)
             write_nvdb(folder / "lumps.nvdb", lumps(), 2 / CELLS, 3 * [-1 + 1 / CELLS])
-            pictures = [np.array([render(program.resolve(), things, eye, options.spp, seed, folder) for seed in range(1, options.seeds + 1)])
-                        for render, program in ((ours, options.program), (theirs, options.pbrt))]
+            pictures = [np.array([program.render(text_of(things, eye), False, options.spp, seed, folder)[0] for seed in range(1, options.seeds + 1)])
+                        for program in (Petzval(options.program.resolve()), Pbrt(options.pbrt.resolve(), sampler="independent"))]
         ratios = pictures[0].mean((1, 2)) / pictures[1].mean((1, 2))
         unit = unit or ratios.mean()
         noise = [np.sqrt((p.var(0, ddof=1)).mean()) / p.mean() for p in pictures]

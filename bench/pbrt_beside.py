@@ -3,6 +3,7 @@
 """Noise and time beside pbrt-v4: the same scene files through both programs, in turn.
 
     python3 bench/pbrt_beside.py build/release/bin/petzval PBRT [--threads 1] [--spp 16] [--seeds 12] [--pictures FOLDER]
+        [--references 0]
 
 PBRT is the program of a build of https://github.com/mmp/pbrt-v4. Three scenes are bundled ones, three are made here in
 pbrt's words; the last rows are through the lens `dgauss-50mm`, pbrt's by its camera "realistic". Both programs render the
@@ -10,21 +11,21 @@ luminance (ours from 31 bands), with box filters as large as a pixel and their o
 pixel, the variance over the seeds over its squared mean; of it the root of the mean over pixels (rms) and the root of the
 median. CPU time is user time a picture less that of a picture of one sample, in ms. `faster` is how many times sooner
 petzval reaches pbrt's noise: the ratio of time times variance, for the rms and for the median. `means` is ours over
-pbrt's, over what that is in the first row of the same camera: both state light in units of their own."""
+pbrt's, over what that is in the first row of the same camera: both state light in units of their own. With
+`--references 1024`, `means` is that of two pictures of so many samples by each program, and `apart` how far these stand apart
+pixel by pixel: the root of the mean square of the relative difference, and what of it the noise of the pictures explains."""
 
 import argparse
 import pathlib
 import re
-import resource
-import subprocess
 import tempfile
 
 import light_noise
 import numpy as np
+from programs_beside import Pbrt, Petzval
 
 SIZE = light_noise.SIZE
 DATA = pathlib.Path(__file__).parent.parent / "data" / "scenes"
-LENS = "dgauss-50mm"
 
 
 # ---------------------------------------------------------------------------------------------------------- scenes
@@ -86,53 +87,7 @@ def for_both(text):
     return text
 
 
-def for_pbrt(text, seed, lens):
-    if lens:
-        distance = re.search(r'"float focaldistance" ([\d.]+)', text).group(1)
-        text = re.sub(r'Camera "perspective".*', f'Camera "realistic" "string lensfile" "{LENS}.dat" "float aperturediameter" 17.1 '
-                      f'"float focusdistance" {distance}', text)
-    return text.replace("WorldBegin", f'PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5\nSampler "zsobol" "integer seed" {seed}\nWorldBegin', 1)
-
-
-# -------------------------------------------------------------------------------------------------------- programs
-def timed(command, folder):
-    """User time [s]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    subprocess.run(list(map(str, command)), check=True, cwd=folder, stdout=subprocess.DEVNULL)
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-
-
-def luminous_efficiency(nm):
-    """Wyman, Sloan & Shirley, J. Comput. Graph. Tech. 2 (2013) 2, table 1."""
-    def lobe(height, centre, below, above):
-        return height * np.exp(-0.5 * ((nm - centre) / np.where(nm < centre, below, above)) ** 2)
-    return lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1)
-
-
-class Petzval:
-    def __init__(self, program, threads):
-        self.program, self.threads = program, threads
-
-    def render(self, text, lens, samples, seed, folder):
-        (folder / "ours.pbrt").write_text(text)
-        camera = ["--lens", LENS] if lens else ["--pinhole"]
-        time = timed([self.program, "render", "ours.pbrt", *camera, "--wavelengths", "400:10:700", "--spp", samples,
-                      "--seed", seed, "--threads", self.threads, "--quiet", "-o", "ours.npy"], folder)
-        return np.load(folder / "ours.npy") @ luminous_efficiency(np.arange(400, 701, 10)), time
-
-
-class Pbrt:
-    def __init__(self, program, threads):
-        self.program, self.threads = program, threads
-
-    def render(self, text, lens, samples, seed, folder):
-        (folder / "theirs.pbrt").write_text(for_pbrt(text, seed, lens))
-        time = timed([self.program, "--spp", samples, "--nthreads", self.threads, "--quiet", "--outfile", "theirs.pfm", "theirs.pbrt"], folder)
-        # PFM: three lines of text, then floats, the lowest row first.
-        data = (folder / "theirs.pfm").read_bytes()[-12 * SIZE[0] * SIZE[1]:]
-        return np.frombuffer(data, "<f4").reshape(SIZE[1], SIZE[0], 3)[::-1] @ [0.2126, 0.7152, 0.0722], time
-
-
+# -------------------------------------------------------------------------------------------------------- figures
 def measured(programs, text, lens, options, folder):
     """Pictures and the time of one, program by program, in turn."""
     pictures, times = [[] for _ in programs], [[] for _ in programs]
@@ -142,6 +97,15 @@ def measured(programs, text, lens, options, folder):
             pictures[i].append(picture)
             times[i].append(time - program.render(text, lens, 1, seed, folder)[1])
     return pictures, [float(np.median(each)) * 1e3 * options.spp / (options.spp - 1) for each in times]
+
+
+def apart(ours, theirs):
+    """Relative difference of two mean pictures of the same mean, and what it would be by noise."""
+    ours, theirs = ([each / np.mean(of) for each in of] for of in (ours, theirs))
+    one, other = np.mean(ours, 0), np.mean(theirs, 0)
+    scale = np.maximum(other, 0.1)
+    noise = (np.var(ours, 0, ddof=1) + np.var(theirs, 0, ddof=1)) / len(ours)
+    return np.sqrt(np.mean(((one - other) / scale) ** 2)), np.sqrt(np.mean(noise / scale ** 2))
 
 
 def save(pictures, path):
@@ -159,27 +123,31 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--spp", type=int, default=16, help="2 or more")
     parser.add_argument("--seeds", type=int, default=12)
+    parser.add_argument("--references", type=int, default=0, help="samples of converged pictures")
     parser.add_argument("--only", help="scenes whose name has this in it")
     parser.add_argument("--pictures", type=pathlib.Path, help="a folder for the mean pictures, side by side (takes imageio)")
     options = parser.parse_args()
-    ours = options.petzval.resolve()
-    programs = [Petzval(ours, options.threads), Pbrt(options.pbrt.resolve(), options.threads)]
-    print(f"{'scene':<24}{'rms: ours':>10}{'pbrt':>7}{'median: ours':>14}{'pbrt':>7}{'ms: ours':>10}{'pbrt':>7}{'faster: rms':>13}{'median':>8}{'means':>8} +-")
+    programs = [Petzval(options.petzval.resolve(), options.threads), Pbrt(options.pbrt.resolve(), options.threads)]
+    print(f"{'scene':<24}{'rms: ours':>10}{'pbrt':>7}{'median: ours':>14}{'pbrt':>7}{'ms: ours':>10}{'pbrt':>7}{'faster: rms':>13}{'median':>8}{'means':>8} +-"
+          + (f"{'apart':>11}{'noise':>8}" if options.references else ""))
     unit = {}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        subprocess.run([ours, "lens", "convert", LENS, folder / f"{LENS}.dat"], check=True, capture_output=True)
+        programs[0].write_lens(folder)
         for title, text, lens in texts(folder):
             if options.only and options.only not in title:
                 continue
             pictures, times = measured(programs, for_both(text), lens, options, folder)
             (rms, median, mean, error), (rms2, median2, mean2, error2) = map(light_noise.figures, pictures)
+            if options.references:
+                pictures = [[program.render(for_both(text), lens, options.references, seed, folder)[0] for seed in (101, 102)] for program in programs]
+                (*_, mean, error), (*_, mean2, error2) = map(light_noise.figures, pictures)
             ratio = mean / mean2
             one = unit.setdefault(lens, ratio)
             slower = times[1] / times[0]
             print(f"{title:<24}{rms:>10.3f}{rms2:>7.3f}{median:>14.4f}{median2:>7.4f}{times[0]:>10.0f}{times[1]:>7.0f}"
-                  f"{slower * (rms2 / rms) ** 2:>13.1f}{slower * (median2 / median) ** 2:>8.1f}{ratio / one:>8.3f} {ratio / one * np.hypot(error / mean, error2 / mean2):.3f}",
-                  flush=True)
+                  f"{slower * (rms2 / rms) ** 2:>13.1f}{slower * (median2 / median) ** 2:>8.1f}{ratio / one:>8.3f} {ratio / one * np.hypot(error / mean, error2 / mean2):.3f}"
+                  + ("{:>9.4f}{:>8.4f}".format(*apart(*pictures)) if options.references else ""), flush=True)
             if options.pictures:
                 options.pictures.mkdir(exist_ok=True, parents=True)
                 save(pictures, options.pictures / f"{title.replace(', ', '-').replace(' ', '-')}.png")

@@ -18,6 +18,7 @@ import tempfile
 import light_noise
 import numpy as np
 import pbrt_beside
+import programs_beside
 
 
 # ------------------------------------------------------------------------------------------------- measured materials
@@ -174,7 +175,7 @@ def main():
     parser.add_argument("--only", default="", help="scenes whose name has this in it, and the first")
     parser.add_argument("--pictures", type=pathlib.Path, help="a folder for the mean pictures, side by side (takes imageio)")
     options = parser.parse_args()
-    programs = [pbrt_beside.Petzval(options.petzval.resolve(), options.threads), pbrt_beside.Pbrt(options.pbrt.resolve(), options.threads)]
+    programs = [programs_beside.Petzval(options.petzval.resolve(), options.threads), programs_beside.Pbrt(options.pbrt.resolve(), options.threads)]
     one = None
     print(f"{'scene':<24}{'means':>8} {'+-':>6}{'pixels':>8}")
     with tempfile.TemporaryDirectory() as name:

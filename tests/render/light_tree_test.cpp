@@ -61,10 +61,10 @@ LightReceiver receiver(Random& random) {
   return {place(random, 5), normalised(place(random, 1)), number(random, 0, 1) < 0.3};
 }
 
-TEST(LightTree, ChoosesAsOftenAsItSays) {
-  Random random(3);
+void expect_choices_as_often_as_said(int lights, int points, int steps, unsigned seed) {
+  Random random(seed);
   std::vector<LightBounds> bounds;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < lights; ++i) {
     LightBounds each;
     const Vector3 at = place(random, 4), half{0.1, 0.2, 0.1};
     each.box = {at - half, at + half}, each.radius = length(half);
@@ -75,7 +75,7 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
     bounds.push_back(each);
   }
   const LightTree tree(bounds);
-  for (int point = 0; point < 50; ++point) {
+  for (int point = 0; point < points; ++point) {
     const LightReceiver to = receiver(random);
     LightTree::Weights weights{};
     const double sum = tree.weigh(to, weights);
@@ -83,11 +83,10 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
     double all = 0;
     for (std::size_t light = 0; light < bounds.size(); ++light)
       all += tree.probability(to, weights, sum, light);
-    // Where both children of a node can do nothing after all, its share goes to lights that are asked in
+    // Where the children of a node can do nothing after all, its share goes to lights that are asked in
     // vain.
     EXPECT_NEAR(all, 1, 1e-12);
     // Numbers in even steps meet each light's interval of `choice` to a step.
-    constexpr int steps = 20000;
     std::vector<int> met(bounds.size());
     for (int i = 0; i < steps; ++i) {
       const LightTree::Choice choice = tree.choose(to, weights, sum, (i + 0.5) / steps);
@@ -98,6 +97,12 @@ TEST(LightTree, ChoosesAsOftenAsItSays) {
     for (std::size_t light = 0; light < bounds.size(); ++light)
       EXPECT_NEAR(met[light], steps * tree.probability(to, weights, sum, light), 1.001) << light;
   }
+}
+
+TEST(LightTree, ChoosesAsOftenAsItSays) {
+  expect_choices_as_often_as_said(200, 50, 20000, 3);
+  // Children of children of children.
+  expect_choices_as_often_as_said(20000, 2, 20000, 4);
 }
 
 TEST(LightTree, LeavesNoLightOutThatArrives) {
@@ -155,6 +160,60 @@ TEST(LightTree, GivesTheSumOverAllLamps) {
   // By chance among all, the relative variance is above 1 for lamps that are so unequal; the tree shall leave
   // less than a fifth.
   EXPECT_LT(squares / (sum * sum) - 1, 0.2);
+}
+
+/// Irradiance by a lamp that shines to all sides alike, over its intensity.
+double irradiance_of_lamp(Vector3 lamp, const LightReceiver& to) {
+  const Vector3 way = lamp - to.position;
+  return std::max(0.0, dot(way, to.normal)) / std::pow(length(way), 3);
+}
+
+LightBounds lamp_at(Vector3 place, double strength) {
+  LightBounds bounds;
+  bounds.box = {place, place};
+  bounds.spread = pi;
+  bounds.strength = strength;
+  return bounds;
+}
+
+/// What a choice among so few finds, over its probability, is the sum over all, whichever lamp it is.
+TEST(LightTree, WeighsFewLampsOneByOne) {
+  Random random(5);
+  std::vector<LightBounds> bounds;
+  for (int i = 0; i < 32; ++i) bounds.push_back(lamp_at(place(random, 4), std::exp(number(random, -4, 4))));
+  const LightTree tree(bounds);
+  const LightReceiver to{{0.3, 0.2, -0.1}, normalised({1, 2, 3}), false};
+  double exact = 0;
+  for (const LightBounds& each : bounds) exact += each.strength * irradiance_of_lamp(each.box[0], to);
+  LightTree::Weights weights;
+  const double sum = tree.weigh(to, weights);
+  for (int i = 0; i < 1000; ++i) {
+    const LightTree::Choice choice = tree.choose(to, weights, sum, (i + 0.5) / 1000);
+    const LightBounds& chosen = bounds[choice.light];
+    EXPECT_NEAR(chosen.strength * irradiance_of_lamp(chosen.box[0], to) / choice.probability, exact,
+                1e-12 * exact);
+  }
+}
+
+/// Of lamps on a wide ceiling, those overhead are chosen in the ratios of what they do.
+TEST(LightTree, WeighsNearLampsOneByOne) {
+  Random random(6);
+  std::vector<LightBounds> bounds;
+  for (int x = -10; x <= 10; ++x)
+    for (int y = -10; y <= 10; ++y)
+      bounds.push_back(lamp_at({1.0 * x, 1.0 * y, 2}, std::exp(number(random, -2, 2))));
+  const LightTree tree(bounds);
+  const LightReceiver to{{0.5, 0.4, 0}, {0, 0, 1}, false};
+  LightTree::Weights weights;
+  const double sum = tree.weigh(to, weights);
+  const auto done_over_probability = [&](std::size_t i) {
+    return bounds[i].strength * irradiance_of_lamp(bounds[i].box[0], to) /
+           tree.probability(to, weights, sum, i);
+  };
+  const std::size_t overhead = 10 * 21 + 10;
+  for (const std::size_t i : {overhead - 20, overhead - 1, overhead + 20, overhead + 41})
+    EXPECT_NEAR(done_over_probability(i), done_over_probability(overhead),
+                1e-12 * done_over_probability(overhead));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/render/lights/equiangular.h>
+#include <petzval/render/lights/light_importance.h>
 
 #include <array>
 #include <cstddef>
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace petzval::render {
-
-/// Where light is to arrive.
-struct LightReceiver {
-  Vector3 position;
-  Vector3 normal;           ///< unit, on the side that is seen
-  bool both_sides = false;  ///< whether light from behind counts, too
-  bool all_around = false;  ///< a point of a medium, which has no normal: all directions count alike
-};
 
 /// A ray through a medium that is to scatter light.
 struct LightedRay {
@@ -41,12 +34,14 @@ struct LightBounds {
 
 /// Lights by place, direction and strength (Conty Estevez & Kulla, "Importance sampling of many lights with
 /// adaptive tree splitting", PACMCGIT 1 (2018) 2): a bound of what the lights of a node do at a point decides
-/// at each fork. A node that can do nothing there is never entered, and one that can, sometimes. Some
-/// nodes near the root, the entries, are weighed all at once: 8, and 32 of many lights.
+/// which is entered. One that can do nothing there never is, and one that can, sometimes. Up to 32 nodes
+/// near the root, the entries, are weighed all at once, and those that are near to the point by what their
+/// children do; from there on a node has up to 16 children. So up to 32 lights are weighed one by one, of
+/// some hundreds those near to the point.
 class LightTree {
  public:
-  static constexpr std::size_t most_entries = 32;
-  using Weights = std::array<double, most_entries>;
+  static constexpr std::size_t most_together = 32;
+  using Weights = std::array<double, most_together>;
 
   LightTree() = default;
   explicit LightTree(std::span<const LightBounds> lights);
@@ -76,21 +71,35 @@ class LightTree {
     std::uint32_t second = 0;  ///< second child; 0: a single light
     std::uint32_t light = 0;
   };
-  struct Way {
-    std::uint64_t turns = 0;  ///< from the entry, the last bit first: 1 for the second child
-    std::uint32_t entry = 0;
-  };
   class Builder;
 
-  static double importance(const Node& node, const LightReceiver& to);
-  /// Of the first child of a node.
-  double share_of_first(std::size_t node, const LightReceiver& to) const;
-  void find_entries();
-  void find_ways(std::size_t node, std::uint32_t entry, std::uint64_t turns, int depth);
+  /// Nodes that are weighed together: the entries, or the children of a node.
+  struct Family {
+    std::size_t first = 0;                ///< of its members
+    std::uint32_t count = 0, filled = 0;  ///< filled up as LightNodes are
+    std::uint32_t parent = 0;             ///< member whose children these are
+    bool all_ways = true;
+  };
+  struct Member {
+    std::uint32_t family = 0;  ///< that it is in
+    std::uint32_t opened = 0;  ///< family of its children; 0: a single light
+    std::uint32_t light = 0;
+  };
+
+  /// A node, opened where most is unknown of most light.
+  std::vector<std::size_t> opened(std::size_t node, std::size_t most) const;
+  void add_family(const std::vector<std::size_t>& nodes, std::uint32_t parent);
+  /// \param near  see light_importances().
+  double weigh_family(std::size_t family, const LightReceiver& to, Weights& weights,
+                      std::uint32_t& near) const;
+  /// The same for children of a node that was chosen: of which one must be, then.
+  double weigh_children(std::size_t family, const LightReceiver& to, Weights& weights) const;
 
   std::vector<Node> nodes_;
-  std::vector<std::size_t> entries_;
-  std::vector<Way> ways_;  ///< of every light
+  std::vector<Family> families_;  ///< the first one has the entries
+  std::vector<Member> members_;
+  std::vector<double> numbers_;  ///< of LightNodes, family by family
+  std::vector<std::uint32_t> member_of_light_;
 };
 
 }  // namespace petzval::render
