@@ -87,11 +87,7 @@ std::vector<std::string> CameraChoice::given_lens_options() const {
   add(!focus.empty(), "--focus");
   add(focus_wavelength_nm.has_value(), "--focus-wavelength");
   add(defocus_mm != 0, "--defocus");
-  add(!lens.state.empty(), "--state");
-  add(!lens.settings.empty(), "--set");
-  add(!lens.substitutions.empty(), "--substitute");
-  add(lens.build.has_value(), "--build");
-  add(!lens.glasses.paths.empty(), "--glass-catalogue");
+  for (std::string& setting : lens.given_settings()) names.push_back(std::move(setting));
   add(apertures == Camera::Apertures::from_fields, "--apertures");
   add(apertures == Camera::Apertures::ignored, "--ignore-apertures");
   add(image_distance_mm.has_value(), "--image-distance");

@@ -286,6 +286,16 @@ void LensChoice::add_settings_to(CLI::App& command) {
       ->needs(number);
 }
 
+std::vector<std::string> LensChoice::given_settings() const {
+  std::vector<std::string> names;
+  if (!state.empty()) names.emplace_back("--state");
+  if (!settings.empty()) names.emplace_back("--set");
+  if (!substitutions.empty()) names.emplace_back("--substitute");
+  if (build) names.emplace_back("--build");
+  if (!glasses.paths.empty()) names.emplace_back("--glass-catalogue");
+  return names;
+}
+
 LensChoice LensChoice::for_lens(const std::string& name) const {
   LensChoice choice = *this;
   choice.path_or_name = name;

@@ -83,6 +83,8 @@ struct LensChoice {
   void require_all_substituted() const;
   /// Adds --state, --set, --substitute and --build alone.
   void add_settings_to(CLI::App& command);
+  /// Of the options that alter a lens, those that were given.
+  std::vector<std::string> given_settings() const;
   /// Reads the lens, sets it to its state, applies the settings and builds it; the reader's notes go to
   /// stderr unless quiet.
   Lens read(const Shared& shared) const;

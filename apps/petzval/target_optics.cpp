@@ -60,6 +60,8 @@ void TargetOptics::validate(bool has_sensor) const {
   if ((psf == "lens") != !lens.path_or_name.empty())
     throw InputError("--psf lens and --lens LENS belong together; give both or neither");
   if (psf != "lens" && field) throw InputError("--field belongs to --psf lens");
+  if (const std::vector<std::string> of_lens = lens.given_settings(); psf != "lens" && !of_lens.empty())
+    throw InputError(fmt::format("{} alters a lens: --psf lens --lens LENS would be right", of_lens.front()));
   if (psf != "wavefront" && pupil.is_aberrated())
     throw InputError(fmt::format(
         "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080, --zernike", psf));

@@ -173,6 +173,8 @@ class Target(ProgramTest):
                 (["--rectangle", "30xnan", *out], ["two numbers"]),
                 ([*rectangle, "--w020", 1, *out], ["--psf wavefront"]),
                 ([*rectangle, "--psf", "gaussian", *out], ["--sigma"]),
+                ([*rectangle, "--set", "surfaces[0].thickness_mm=3", *out], ["--set", "--psf lens"]),
+                ([*rectangle, "--build", 3, *out], ["--build", "--psf lens"]),
                 ([*rectangle, "--zernike", "4=0.1", *out], ["--psf wavefront"]),
                 ([*rectangle, "--psf", "wavefront", "--zernike", "4=x", *out], ["--zernike", "coefficient"]),
                 ([*rectangle, "--psf", "wavefront", "--zernike", "4=1,4=2", *out], ["twice"]),

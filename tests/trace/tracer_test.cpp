@@ -179,6 +179,19 @@ TEST(Pencil, ChiefRayPassesTheStopCentre) {
   }
 }
 
+// However near the object is, the way out to a field of it is a bounded number of steps.
+TEST(Pencil, ChiefRayOfAnObjectOnTheGlass) {
+  Lens lens = triplet_like();
+  lens.object_distance_mm = 1e-300;
+  const Tracer tracer(lens, 550);
+  ChiefRayMarch march(lens, tracer);
+  constexpr double height_mm = 0.05;
+  const std::optional<double> v = march.v_at(height_mm);
+  ASSERT_TRUE(v);
+  const auto at = Pencil::from_object(lens, height_mm).clearance(tracer, 0, *v, Tracer::Clip::none);
+  EXPECT_NEAR(at.stop_y_mm, 0, 1e-9);
+}
+
 TEST(Pencil, NoChiefRayThroughAnOpaqueField) {
   Lens lens = triplet_like();
   EXPECT_THROW(Pencil::from_object(lens, 181), InputError);

@@ -177,7 +177,12 @@ ChiefRayMarch::ChiefRayMarch(const Lens& lens, const Tracer& tracer, From from)
   if (from == From::object && !lens.object_distance_mm) {
     step_ = march_step_deg;
   } else if (from == From::object) {
-    step_ = *lens.object_distance_mm / march_steps_per_tangent;
+    // Before an object that nearly touches the lens tangents are as small as the pupil is far.
+    constexpr double nearest_share = 1e-3;
+    const double to_pupil_mm = std::abs(*lens.object_distance_mm +
+                                        first_order(lens, tracer.wavelength_nm()).entrance_pupil.position_mm);
+    step_ = std::max(*lens.object_distance_mm, std::isfinite(to_pupil_mm) ? nearest_share * to_pupil_mm : 0) /
+            march_steps_per_tangent;
   } else {
     const double exit_pupil = std::abs(first_order(lens, tracer.wavelength_nm()).exit_pupil.position_mm);
     step_ = (std::isfinite(exit_pupil) ? std::max(exit_pupil, tracer.stop_radius_mm())
