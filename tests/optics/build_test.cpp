@@ -3,6 +3,7 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 
@@ -100,6 +101,19 @@ TEST(BuildTable, EndsAtTheLastFieldThatPasses) {
   FieldTracer tracer(lens, 550);
   const std::optional<ChiefRay> beyond = tracer.chief_ray(table.fields.back() * 1.02);
   EXPECT_TRUE(!beyond || tracer.g_sensor_sr(*beyond) < 0.2 * table.g_sensor_sr.back());
+}
+
+// At 35.6 degrees the image of this lens turns back, 3.3 mm from the axis.
+TEST(BuildTable, EndsBeforeTheImageTurnsBack) {
+  Lens lens = read_lens("edmund-54852").lens;
+  lens.object_distance_mm.reset();
+  TableOptions options = small({400, 410, 420, 430, 440, 450, 550, 700}, 3);
+  for (const double height_mm : {3.24, 3.6, 5.0}) {
+    options.max_image_height_mm = height_mm;
+    const LensDataTable table = build_lens_data_table(lens, options);  // whose heights rise, or it says so
+    EXPECT_GT(table.fields.back(), 34);
+    for (const double g_sr : table.g_source_sr) EXPECT_LE(g_sr, 4 * pi);
+  }
 }
 
 TEST(BuildTable, IsTheSameForAnyNumberOfThreads) {

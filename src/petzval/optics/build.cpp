@@ -98,6 +98,24 @@ class FieldLimit {
     return chief->image_height_mm;
   }
 
+  /// The last field, up to one that passes, before the image folds back: before it moves inwards, or outwards
+  /// so little that the chief rays of a wall would bring more light than all directions can give.
+  double unfolded(double field) {
+    constexpr int steps = 30;
+    constexpr double suspicious_share = 0.25;  // of a mean step
+    double low = 0, before_mm = 0;             // before the last step, which may have been beyond the fold
+    for (int i = 1; i <= steps; ++i) {
+      const double here = field * i / steps;
+      const std::optional<ChiefRay> chief = tracer_.chief_ray(sign_ * here);
+      const double height_mm = chief ? chief->image_height_mm : 0, step_mm = height_mm - before_mm;
+      const bool fast = step_mm > suspicious_share * height_mm / i;
+      if (!fast && !(step_mm > 0 && is_unfolded(here))) return last_unfolded(low, here);
+      low = field * (i - 1) / steps;
+      before_mm = height_mm;
+    }
+    return is_unfolded(field) ? field : last_unfolded(low, field);
+  }
+
   /// The field at which the image height reaches `wanted_mm`, or the last one that passes.
   double last_field(double wanted_mm, double stride) {
     double low = 0, low_height = 0;
@@ -114,6 +132,25 @@ class FieldLimit {
   }
 
  private:
+  double last_unfolded(double low, double high) {
+    constexpr int halvings = 40;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (is_unfolded(middle) ? low : high) = middle;
+    }
+    constexpr double clear_of_fold = 1 - 1e-3;  // where slopes do not depend on the step that finds them
+    return clear_of_fold * low;
+  }
+
+  bool is_unfolded(double field) {
+    constexpr double nearer = 1 - 1e-4;
+    const std::optional<ChiefRay> inner = tracer_.chief_ray(sign_ * nearer * field),
+                                  chief = tracer_.chief_ray(sign_ * field);
+    if (!inner || !chief || !(chief->image_height_mm > inner->image_height_mm)) return false;
+    const double n = tracer_.tracer().image_index();
+    return tracer_.g_source_sr(*chief) <= pi * n * n;
+  }
+
   /// Where the chief ray alone reaches the height, between two fields on either side of it (false position,
   /// Illinois).
   std::optional<double> crossing(double low, double low_height, double high, double high_height,
@@ -195,6 +232,7 @@ std::vector<double> choose_fields(const Lens& lens, const TableOptions& options)
     FieldLimit limit(lens, nm[w], options.clip);
     if (!limit.height(wanted))
       last_of[w] = std::min(wanted, limit.last_field(std::numeric_limits<double>::infinity(), stride));
+    last_of[w] = limit.unfolded(last_of[w]);
   });
   const double last = *std::ranges::min_element(last_of);
   if (!(last > 0)) throw InputError(fmt::format("{}: no ray passes beside the axis", lens.name));
