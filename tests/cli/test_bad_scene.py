@@ -70,16 +70,15 @@ class BadScene(ProgramTest):
         self.refuse("empty.mat", "empty.mat")
 
     def test_a_scene_too_small_says_by_how_many_degrees(self):
-        # The frame is 0.64 mm wide behind a 6 mm lens, 2 atan(0.32 / 6.14) = 6.0 degrees, and the PSF's margin of cells
-        # of 20 um wider, and two and one more of the pixel's and the source's filter; the scene has 2 degrees.
+        # The frame is 0.64 mm wide, 6.15 mm behind a thin lens of 6 mm, and the scene 243.85 mm before it; 2 % beyond
+        # count too. From the sensor, 250 mm away, that is 5.93 degrees; the scene has 2.
         self.exr(grey)
         done = self.petzval("image", "scene.exr", *LENS, "--sensor", SENSOR, "--scene-angle", "2", "--scene-distance",
                             "0.25m", "--supersample", 1, "-o", "out.png")
         self.assert_error(done, 2, "falls short by")
         short = re.search(r"falls short by ([\d.]+)° horizontally, ([\d.]+)° vertically", done.stderr)
-        margin = int(re.search(r"a margin of (\d+) cells", done.stderr)[1])
-        needed = 2 * math.degrees(math.atan((0.32 + 0.02 * (margin + 3)) / 6.14))
-        self.assertAlmostEqual(float(short[1]), needed - 2.0, delta=0.3)
+        needed = 2 * math.degrees(math.atan(1.02 * 0.32 * 243.85 / 6.15 / 250))
+        self.assertAlmostEqual(float(short[1]), needed - 2.0, delta=0.05)
 
     def test_impossible_options(self):
         self.exr(grey)

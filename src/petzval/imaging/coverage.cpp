@@ -50,10 +50,10 @@ void check_coverage(const Scene& scene, const SeenExtent& wanted, Surround surro
   const auto short_by = [](double needed, double have) { return std::max(0.0, needed - have); };
   const double margin = margin_of(surround);
   const std::string shortfall = fmt::format(
-      "the scene covers {:.2f}° × {:.2f}° ({:.2f}° across its corners), the frame{} sees {:.2f}° × {:.2f}° "
+      "the scene covers {:.2f}° × {:.2f}° ({:.2f}° across its corners), the frame{} {:.2f}° × {:.2f}° "
       "({:.2f}°): it falls short by {:.2f}° horizontally, {:.2f}° vertically and {:.2f}° diagonally",
       scene.horizontal_angle_deg(), scene.vertical_angle_deg(), scene.diagonal_angle_deg(),
-      margin > 0 ? fmt::format(" and {:g} % beyond", percent * margin) : "", wide, high, across,
+      margin > 0 ? fmt::format(" and {:g} % beyond see", percent * margin) : " sees", wide, high, across,
       short_by(wide, scene.horizontal_angle_deg()), short_by(high, scene.vertical_angle_deg()),
       short_by(across, scene.diagonal_angle_deg()));
   if (surround == Surround::error)
