@@ -135,9 +135,9 @@ try_container() { # its steps, without a container
   while read -r step; do in_bare container-build bash -ec "$step" </dev/null; done < <(steps 1)
   cp "$build"/packages/petzval_*.deb "$image/tmp"
   while read -r step; do in_bare container bash -ec "$step" </dev/null; done < <(steps 2)
-  mkdir -p "$image/work"
-  in_bare container bash -c 'cd /work && petzval image studio --lens edmund-54852 --quiet -o studio.png'
-  test -s "$image/work/studio.png"
+  mkdir -p "$image/pictures"
+  in_bare container bash -c 'cd /pictures && petzval image studio --lens edmund-54852 --quiet -o studio.png'
+  test -s "$image/pictures/studio.png"
 }
 
 unmount() { umount --quiet "$folder"/bare/*/proc || true; }

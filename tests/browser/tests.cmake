@@ -4,10 +4,12 @@ find_program(CHROMIUM chromium)
 find_program(CHROMEDRIVER chromedriver)
 execute_process(COMMAND ${Python3_EXECUTABLE} -c "import selenium" RESULT_VARIABLE no_selenium OUTPUT_QUIET ERROR_QUIET)
 if(TARGET petzval_program AND CHROMIUM AND CHROMEDRIVER AND no_selenium EQUAL 0)
-  add_test(NAME browser.live COMMAND Python3::Interpreter ${CMAKE_CURRENT_LIST_DIR}/test_live_page.py $<TARGET_FILE:petzval_program>
-    ${CHROMIUM} ${CHROMEDRIVER})
-  # A browser and pictures on every core: beside nothing else.
-  set_tests_properties(browser.live PROPERTIES RUN_SERIAL ON TIMEOUT 1500)
+  foreach(what IN ITEMS page scenes)
+    add_test(NAME browser.live_${what} COMMAND Python3::Interpreter ${CMAKE_CURRENT_LIST_DIR}/test_live_${what}.py
+      $<TARGET_FILE:petzval_program> ${CHROMIUM} ${CHROMEDRIVER})
+    # A browser and pictures on every core: beside nothing else.
+    set_tests_properties(browser.live_${what} PROPERTIES RUN_SERIAL ON TIMEOUT 1500 ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+  endforeach()
 else()
   message(STATUS "no test in a browser: it wants chromium, chromium-driver and python3-selenium")
 endif()

@@ -103,7 +103,8 @@ TEST(BuildTable, EndsAtTheLastFieldThatPasses) {
   EXPECT_TRUE(!beyond || tracer.g_sensor_sr(*beyond) < 0.2 * table.g_sensor_sr.back());
 }
 
-// At 35.6 degrees the image of this lens turns back, 3.3 mm from the axis.
+// The image of this lens turns back at 35.2 degrees for 400 nm, at 35.6 for 550, says `petzval lens
+// distortion`.
 TEST(BuildTable, EndsBeforeTheImageTurnsBack) {
   Lens lens = read_lens("edmund-54852").lens;
   lens.object_distance_mm.reset();

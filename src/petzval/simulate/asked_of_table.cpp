@@ -5,14 +5,18 @@
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/simulate/asked_of_table.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace petzval {
 
+double beyond_frame_mm(double half_diagonal_mm, double pitch_um) {
+  constexpr double pixels = 8;
+  return std::max(pixels * pitch_um * mm_per_um, margin_of(Surround::error) * half_diagonal_mm);
+}
+
 std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
-  constexpr double pixels_beyond = 8, beyond = margin_of(Surround::error);
-  const double beyond_mm =
-      std::max(pixels_beyond * frame.pitch_um * mm_per_um, beyond * frame.half_diagonal_mm());
+  const double beyond_mm = beyond_frame_mm(frame.half_diagonal_mm(), frame.pitch_um);
   return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
 }
 

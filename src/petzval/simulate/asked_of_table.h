@@ -11,6 +11,10 @@
 
 namespace petzval {
 
+/// How far beyond a frame a table reaches: where the scene that fills it does, and PSFs spread into its
+/// corner.
+double beyond_frame_mm(double half_diagonal_mm, double pitch_um);
+
 /// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
 std::array<double, 2> half_frame_mm(const SensorGeometry& frame);
 

@@ -187,12 +187,10 @@ double pixel_um(const Scene& scene, const Lens& lens, const std::optional<Sensor
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
 double image_height_mm(const Scene& scene, double pitch_um, const std::optional<Sensor>& sensor) {
-  constexpr double pixels_beyond = 8;
   const double half_diagonal_mm = sensor
                                       ? sensor->geometry.half_diagonal_mm()
                                       : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
-  return half_diagonal_mm +
-         std::max(pixels_beyond * pitch_um * mm_per_um, margin_of(Surround::error) * half_diagonal_mm);
+  return half_diagonal_mm + beyond_frame_mm(half_diagonal_mm, pitch_um);
 }
 
 /// Every `step`th of the wavelengths, and the last.
