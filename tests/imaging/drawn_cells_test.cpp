@@ -6,6 +6,7 @@
 #include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/distortion.h>
 #include <petzval/imaging/scene_rows.h>
+#include <petzval/scene/chart_canvas.h>
 #include <petzval/scene/charts.h>
 
 #include <algorithm>
@@ -134,6 +135,28 @@ TEST(DrawnCells, LaySquaresWhereTheirPointsFall) {
     for (const LensDataTable& table : {barrel_table(), bent_table()})
       EXPECT_LT(rms_error(board, table, radiance), half_a_point * 2) << squares;  // twice the mean's contrast
   }
+}
+
+/// Grey fields that share their borders on a black ground, none of which may show between them.
+TEST(DrawnCells, LayFieldsThatMeetWithoutAGap) {
+  ChartCanvas canvas(chart(192, 144, {550}));
+  canvas.fill(canvas.flat_paint(0));
+  const double side = 5.37;
+  const auto level = [&](double column, double row) {
+    const int i = static_cast<int>(std::floor(column / side)), j = static_cast<int>(std::floor(row / side));
+    return 0.3 + 0.1 * ((i + 2 * j) % 5);
+  };
+  for (int j = 0; j * side < 144; ++j)
+    for (int i = 0; i * side < 192; ++i) {
+      Shape field;
+      field.add_rectangle(i * side, j * side, (i + 1) * side, (j + 1) * side);
+      canvas.draw(field, canvas.flat_paint(level((i + 0.5) * side, (j + 0.5) * side)));
+    }
+  const Scene scene = std::move(canvas).lit();
+  const double of_white = double(scene.drawing()->figures[0].radiance[0]) / level(1, 1);
+  const auto radiance = [&](double column, double row) { return of_white * level(column, row); };
+  for (const LensDataTable& table : {barrel_table(), bent_table()})
+    EXPECT_LT(rms_error(scene, table, radiance), half_a_point);
 }
 
 /// A ground that varies smoothly, and a turned square on it.

@@ -89,13 +89,15 @@ std::unique_ptr<DrawnCells> DrawnCells::make(const SceneDrawing& drawing, int ba
 void DrawnCells::draw(std::size_t row, std::span<const float> g_source_sr,
                       std::span<float> irradiance) const {
   thread_local std::vector<double> coverage;
+  thread_local std::vector<float> ground;
   coverage.resize(irradiance.size());
+  ground.assign(irradiance.begin(), irradiance.end());
   for (const Figure& figure : figures_) {
     const auto [from, end] = figure.shape.coverage(static_cast<int>(row), coverage);
     for (std::size_t cell = from; cell < end; ++cell) {
       const double light = double(figure.radiance) * double(g_source_sr[cell]);
       irradiance[cell] =
-          static_cast<float>(double(irradiance[cell]) + coverage[cell] * (light - double(irradiance[cell])));
+          static_cast<float>(double(irradiance[cell]) + coverage[cell] * (light - double(ground[cell])));
     }
   }
 }

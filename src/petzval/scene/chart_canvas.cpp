@@ -6,6 +6,7 @@
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/chart_canvas.h>
+#include <petzval/scene/outlines.h>
 #include <petzval/scene/scene_light.h>
 #include <petzval/scene/wavelength_list.h>
 
@@ -30,6 +31,16 @@ Spectrum seen_light(const Spectrum& illuminant) {
   std::vector<double> values = band_light(illuminant, wavelengths);
   for (std::size_t i = 0; i < wavelengths.size(); ++i) values[i] *= weights[i].y;
   return Spectrum(std::move(wavelengths), std::move(values));
+}
+
+/// Leaves of each figure what later ones do not cover.
+void part_figures(SceneDrawing& drawing) {
+  std::vector<const Shape*> shapes;
+  for (const SceneDrawing::Figure& figure : drawing.figures) shapes.push_back(figure.shape.get());
+  std::vector<Shape> parts = uncovered_parts(shapes);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    drawing.figures[i].shape = std::make_shared<const Shape>(std::move(parts[i]));
+  std::erase_if(drawing.figures, [](const SceneDrawing::Figure& figure) { return figure.shape->empty(); });
 }
 
 double sum(const std::vector<double>& values) {
@@ -164,6 +175,7 @@ Scene ChartCanvas::lit() && {
   if (!drawing_.figures.empty() && drawing_.ground.size() == light_.size()) {
     std::vector<double> factors = light_;
     for (double& factor : factors) factor *= level;
+    part_figures(drawing_);
     drawing_.scale(factors);
     scene_.set_drawing(std::move(drawing_));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/scene/lettering.h>
+#include <petzval/scene/outlines.h>
 
 #include <array>
 #include <cmath>
@@ -115,9 +116,10 @@ std::vector<Point> stroke_outline(Point from, Point to, double width) {
 }  // namespace
 
 void add_text(Shape& shape, std::string_view text, double left, double top, double height) {
-  std::vector<std::vector<Point>> strokes;
+  std::vector<Outline> strokes;
   add_text(strokes, text, left, top, height);
-  for (const std::vector<Point>& outline : strokes) shape.add_polygon(outline);
+  const Shape letters = united(strokes);
+  for (const Shape::Edge& edge : letters.edges()) shape.add_edge(edge);
 }
 
 void add_text(std::vector<std::vector<Point>>& outlines, std::string_view text, double left, double top,

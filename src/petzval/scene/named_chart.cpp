@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/scene/named_chart.h>
+#include <petzval/scene/outlines.h>
 #include <petzval/scene/star_field.h>
 
 #include <algorithm>
@@ -25,9 +26,7 @@ Scene painted(const FigureChart& chart, const ChartOptions& options) {
   ChartCanvas canvas(options);
   canvas.fill(canvas.flat_paint(chart.ground));
   for (const ChartFigure& figure : chart.figures) {
-    Shape shape;
-    for (const std::vector<Point>& outline : figure.outlines) shape.add_polygon(outline);
-    canvas.draw(shape, canvas.flat_paint(figure.level));
+    canvas.draw(united(figure.outlines), canvas.flat_paint(figure.level));
   }
   return std::move(canvas).lit();
 }

@@ -10,8 +10,8 @@
 
 namespace petzval {
 
-/// Figures of one radiance each on a ground, in a scene's samples as lengths. Later figures cover earlier
-/// ones.
+/// Figures of one radiance each on a ground, in a scene's samples as lengths. They do not overlap, so that
+/// what they cover of a cell adds up to 1 at most.
 struct SceneDrawing {
   struct Figure {
     std::shared_ptr<const Shape> shape;

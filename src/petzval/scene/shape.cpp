@@ -55,10 +55,10 @@ void add_piece(std::span<double> differences, double from, double to, double hei
 
 void Shape::add_polygon(std::span<const Point> corners) {
   const bool turned = twice_signed_area(corners) < 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    Edge edge{corners[i], corners[(i + 1) % corners.size()]};
-    if (turned) std::swap(edge.from, edge.to);
-    add_edge(edge);
+  const std::size_t count = corners.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto corner = [&](std::size_t k) { return corners[turned ? count - 1 - k % count : k % count]; };
+    add_edge({corner(i), corner(i + 1)});
   }
 }
 

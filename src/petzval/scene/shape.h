@@ -11,6 +11,7 @@ namespace petzval {
 /// A point of a picture [pixels], x to the right, y down, the corner of the first pixel at (0, 0).
 struct Point {
   double x = 0, y = 0;
+  bool operator==(const Point&) const = default;
 };
 
 /// A set of polygons that do not overlap each other. Where they do, a pixel counts as covered at most once;

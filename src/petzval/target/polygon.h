@@ -2,17 +2,15 @@
 // What a target is made of: polygons with grey levels on a ground.
 #pragma once
 
+#include <petzval/scene/shape.h>
+
 #include <string>
 #include <vector>
 
 namespace petzval {
 
 /// A place in the picture [pixels]: x right, y down, pixel centres at half-integers.
-struct Vertex {
-  double x = 0, y = 0;
-  bool operator==(const Vertex&) const = default;
-};
-
+using Vertex = Point;
 using Contour = std::vector<Vertex>;  ///< closed: the last vertex is joined to the first
 
 /// One area of one level. A place is inside if a ray from it crosses the contours an odd number of times, so

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/scene/outlines.h>
 #include <petzval/target/meetings.h>
 #include <petzval/target/visible_regions.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <polyclipping/clipper.hpp>
 
 namespace petzval {
 
@@ -50,30 +50,6 @@ std::vector<Contour> directed(const Polygon& polygon) {
     if ((signed_area(result.back()) < 0) != hole) std::reverse(result.back().begin(), result.back().end());
   }
   return result;
-}
-
-constexpr double clipper_scale = 1 << 24;
-
-ClipperLib::Paths to_clipper(const std::vector<Contour>& contours) {
-  ClipperLib::Paths paths;
-  for (const Contour& contour : contours) {
-    ClipperLib::Path path;
-    for (const Vertex& v : contour)
-      path.emplace_back(std::llround(v.x * clipper_scale), std::llround(v.y * clipper_scale));
-    paths.push_back(std::move(path));
-  }
-  return paths;
-}
-
-std::vector<Contour> from_clipper(const ClipperLib::Paths& paths) {
-  std::vector<Contour> contours;
-  for (const ClipperLib::Path& path : paths) {
-    Contour contour;
-    for (const ClipperLib::IntPoint& p : path)
-      contour.push_back({static_cast<double>(p.X) / clipper_scale, static_cast<double>(p.Y) / clipper_scale});
-    contours.push_back(std::move(contour));
-  }
-  return contours;
 }
 
 /// What later polygons leave of one. Clipper directs outlines as Region wants them.
