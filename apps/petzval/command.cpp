@@ -39,14 +39,20 @@ namespace {
 /// Set by SIGINT and SIGTERM.
 volatile std::sig_atomic_t interrupted = 0;
 
-/// CLI11 takes an empty word for 0.
-void refuse_empty_numbers(const CLI::App& command) {
+/// CLI11 takes an empty word for 0, "nan" and "inf" for numbers, and wraps whole numbers below 0 around.
+void refuse_odd_numbers(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options({})) {
-    const std::vector<std::string> words = option->results();
-    const bool number = right_word(*option) != "a value";
-    if (number && std::find(words.begin(), words.end(), "") != words.end())
-      throw InputError(
-          fmt::format("{}: an empty word; {} would be right", option->get_name(), right_word(*option)));
+    const std::string right = right_word(*option);
+    if (right == "a value") continue;
+    for (const std::string& word : option->results()) {
+      if (word.empty())
+        throw InputError(fmt::format("{}: an empty word; {} would be right", option->get_name(), right));
+      std::string complaint;
+      if (right == "a number" && !std::isfinite(std::strtod(word.c_str(), nullptr)))
+        complaint = fmt::format("{} is not a number", word);
+      if (option->get_type_name().starts_with("UINT")) complaint = whole_number()(word);
+      if (!complaint.empty()) throw InputError(fmt::format("{}: {}", option->get_name(), complaint));
+    }
   }
 }
 
@@ -80,7 +86,7 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
   command->add_flag("--quiet", shared.quiet, "No notes and no progress bar");
   if (prints_numbers) command->add_flag("--json", shared.json, "Numbers as JSON on stdout");
   command->callback([&shared, command, work = std::move(work)] {
-    refuse_empty_numbers(*command);
+    refuse_odd_numbers(*command);
     if (shared.parse_only) return;
     check_outputs(*command);
     // Whatever the command does, its threads are limited and Ctrl-C ends it.

@@ -281,7 +281,9 @@ void add_sampling_options(RenderRequest& request, CLI::App& command) {
           "A file to save to, on the way, at the end and on Ctrl-C, and to go on from: a larger --spp "
           "then adds samples")
       ->check(output_file());
-  command.add_option("--checkpoint-seconds", request.checkpoint_seconds, "How often")->capture_default_str();
+  command.add_option("--checkpoint-seconds", request.checkpoint_seconds, "How often")
+      ->check(number_not_negative())
+      ->capture_default_str();
   add_piece_options(request, command);
 }
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <climits>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -61,6 +62,17 @@ TEST_F(WholeFileTest, RefusesFoldersAndMissingFolders) {
   EXPECT_THROW(WholeFile{folder.string()}, InputError);
   EXPECT_THROW(WholeFile{(folder / "none" / "out.txt").string()}, InputError);
   EXPECT_THROW(WholeFile{std::string()}, InputError);
+}
+
+TEST_F(WholeFileTest, RefusesNamesThatAreTooLong) {
+  constexpr std::size_t longest_name = 255;  // NAME_MAX of all file systems in use
+  EXPECT_THROW(write_whole_file(folder / std::string(longest_name + 1, 'x'), ""), InputError);
+  EXPECT_THROW(write_whole_file(folder / (std::string(longest_name, 'x') + ".svg"), ""), InputError);
+  std::string deep = folder;
+  while (deep.size() < PATH_MAX) deep += "/.";
+  EXPECT_THROW(write_whole_file(deep + "/out.txt", ""), InputError);
+  write_whole_file(folder / std::string(longest_name / 2, 'x'), "");
+  EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(WholeFileTest, LeavesPipesAndLinksAsTheyAre) {

@@ -45,6 +45,13 @@ class Program(ProgramTest):
         self.assert_refused(*image, "--tolerance", "", words=["--tolerance", "empty", "a number would be right"])
         self.assert_refused(*image, "--f-number", "", words=["--f-number", "empty", "a number above 0 would be right"])
         self.assert_refused(*image, "--nodes", "", words=["--nodes", "empty", "a whole number would be right"])
+        for option in ("--tolerance", "--gain", "--exposure-compensation"):
+            for word in ("nan", "inf", "-inf", "1e400"):
+                self.assert_refused(*image, f"{option}={word}", words=[f"{option}: {word} is not a number"])
+        self.assert_refused(*image, "--sharpen=nan", words=["--sharpen: nan is not a number"])
+        for word in ("-1", "18446744073709551616"):
+            self.assert_refused(*image, f"--build={word}", words=[f"--build: {word} is not a whole number from 0 on"])
+        self.assert_refused(*image[:-1], "x" * 4000 + ".npy", words=["too long a name"])
 
     def test_help_is_a_command_too(self):
         for words in ([], ["image"], ["lens", "mtf"]):

@@ -66,6 +66,7 @@ TEST(KnownLight, SeesWhatLiesBetweenTheClippingPlanes) {
   EXPECT_NEAR(seen(2.01, 3.01), 3, 1e-6);
   EXPECT_NEAR(seen(2.01, 2.99), 0, 1e-6);
   EXPECT_NEAR(seen(0, 0.99), 0, 1e-6);
+  EXPECT_EQ(seen(1e19, forever), 0);  // beyond where Embree takes rays
 }
 
 /// What a white wall at z = 3 sends back from the point (0, 0, 3), seen from the side, times π: the

@@ -145,6 +145,8 @@ TEST(Clip, RefusesWhatAFrameCannotHold) {
   EXPECT_THROW(Clip(plan, clip_sensor(), options), InputError);
   options.frames = 2;
   EXPECT_THROW(Clip(plan, clip_sensor(), options).frame(2), InputError);
+  options.motion = MotionPath::steady({.pan_deg = 1e12}, 1);  // 1e11 steps in an exposure
+  EXPECT_THROW(Clip(plan, clip_sensor(), options).frame(0), InputError);
 }
 
 TEST(MotionPath, IsStraightBetweenItsInstants) {

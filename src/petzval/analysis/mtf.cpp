@@ -49,6 +49,7 @@ SensorOtf fill(const std::vector<double>& frequencies, const std::array<double, 
   SensorOtf result;
   result.image_mm = image_mm;
   for (const double frequency : frequencies) {
+    check_stop();
     result.tangential.push_back(otf(MtfDirection::tangential, frequency));
     result.sagittal.push_back(otf(MtfDirection::sagittal, frequency));
   }

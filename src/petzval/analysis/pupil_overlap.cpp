@@ -14,16 +14,17 @@ namespace petzval {
 namespace {
 
 /// Nodes along and across the chords: what a smooth overlap needs, and what the waves across it take, half as
-/// many nodes as radians; beyond the largest number the transfer is lost in noise anyway. In steps, so that
-/// frequencies share their rules.
-constexpr int fewest_nodes = 24, most_nodes = 160, node_step = 8;
+/// many nodes as radians; beyond the largest numbers nodes and waves beat. A fit takes as many as 250 periods
+/// of the pattern in the spot need, where a defocused circle has 1e-4 left; aimed rays cost more. In steps,
+/// so that frequencies share their rules.
+constexpr int fewest_nodes = 24, most_nodes_of_fit = 1024, most_nodes_of_rays = 160, node_step = 8;
 /// Where a pupil is dark inside, the waves end at edges that no rule knows: by so many nodes both ways an OTF
 /// is good to some 1e-4.
 constexpr int nodes_of_dark_edges = 400;
 
-int nodes_for(double cycles) {
+int nodes_for(double cycles, int most) {
   const double steps = std::ceil((fewest_nodes + 4 * cycles) / node_step);
-  return std::clamp(node_step * static_cast<int>(std::min(steps, 1e6)), fewest_nodes, most_nodes);
+  return std::clamp(node_step * static_cast<int>(std::min(steps, 1e6)), fewest_nodes, most);
 }
 
 /// ∫ f over [low, high], with nodes crowded towards both ends as cos θ: a chord ends there like a square
@@ -78,6 +79,7 @@ PupilOverlap::PupilOverlap(const FieldTracer& tracer, const ExitPupil& pupil, do
     : pupil_(pupil),
       lambda_mm_(tracer.tracer().wavelength_nm() * mm_per_nm / tracer.tracer().image_index()),
       transverse_mm_(transverse_mm),
+      most_nodes_(along ? most_nodes_of_fit : most_nodes_of_rays),
       along_(along ? std::move(along) : place_by_place(wave)) {
   if (std::optional<PupilMask> mask = PupilMask::of(tracer, pupil.chief())) {
     dark_inside_ = true;
@@ -95,7 +97,8 @@ PupilOverlap::PupilOverlap(const FieldTracer& tracer, const ExitPupil& pupil, do
 
 std::complex<double> PupilOverlap::otf(MtfDirection direction, double frequency_cpmm) {
   const int whole_nodes = dark_inside_ ? nodes_of_dark_edges : fewest_nodes;
-  const int nodes = dark_inside_ ? nodes_of_dark_edges : nodes_for(2 * frequency_cpmm * transverse_mm_);
+  const int nodes =
+      dark_inside_ ? nodes_of_dark_edges : nodes_for(2 * frequency_cpmm * transverse_mm_, most_nodes_);
   // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
   std::optional<double>& whole = whole_[direction == MtfDirection::tangential ? 0 : 1];
   if (!whole) whole = unscaled(direction, 0, whole_nodes).real();

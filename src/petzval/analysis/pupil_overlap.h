@@ -45,6 +45,7 @@ class PupilOverlap {
 
   const ExitPupil& pupil_;
   double lambda_mm_, transverse_mm_;
+  int most_nodes_;
   OverlapAlong along_;
   bool dark_inside_ = false;
   double widest_beta_ = 0, width_ = 0;  ///< where a round pupil is widest in α

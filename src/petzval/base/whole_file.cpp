@@ -47,6 +47,8 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)) {
   if (!folder.empty() && !fs::is_directory(folder, ignored))
     throw InputError(path_, fmt::format("the folder {} does not exist; make it first", folder.string()));
   temporary_ = temporary_name(path_);
+  if (std::error_code error; !fs::exists(temporary_, error) && error == std::errc::filename_too_long)
+    throw InputError(path_, "is too long a name for a file; a shorter one would be right");
 }
 
 WholeFile::~WholeFile() {

@@ -16,7 +16,7 @@ namespace petzval {
 /// Without commit() nothing is left behind and a previous out.png is untouched.
 class WholeFile {
  public:
-  /// \throws InputError if the folder does not exist, or `path` is a folder, a pipe or a device.
+  /// \throws InputError if the folder does not exist, or `path` is a folder, a pipe, a device or too long.
   explicit WholeFile(std::string path);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/simulate/clip_light.h>
 
@@ -49,10 +50,16 @@ class LightOfPlan : public ClipLight {
     corners.push_back(to_s);
     std::vector<double> at{from_s};
     constexpr double rounding = 1e-9;
+    constexpr double most_steps = 1 << 24;  // would take days
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
       const double a = corners[i], b = corners[i + 1];
       const double steps =
           std::max(1.0, std::ceil(moved_px(motion_.at(a), motion_.at(b), plan_) / step_px_ - rounding));
+      if (!(double(at.size()) + steps <= most_steps))
+        throw InputError(fmt::format(
+            "the picture moves by {:g} pixels in {:g} s, which takes {:g} steps; a slower motion or "
+            "larger steps would be right",
+            steps * step_px_, b - a, steps));
       for (double k = 1; k <= steps; ++k) at.push_back(k == steps ? b : a + (b - a) * k / steps);
     }
     return at;

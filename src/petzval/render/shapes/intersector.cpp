@@ -84,6 +84,12 @@ void keep_nothing(const RTCFilterFunctionNArguments* arguments) {
 
 void occlude_nothing(const RTCOccludedFunctionNArguments*) {}
 
+/// Embree takes no coordinates beyond 1.844e18, and ends the program where it was built with assertions.
+bool within_embree(Vector3 place) {
+  constexpr double farthest = 1.8e18;
+  return std::abs(place.x) < farthest && std::abs(place.y) < farthest && std::abs(place.z) < farthest;
+}
+
 RTCRay ray_of(Vector3 origin, Vector3 direction, double limit) {
   RTCRay ray{};
   ray.org_x = static_cast<float>(origin.x);
@@ -257,6 +263,7 @@ Intersector::Intersector(const std::vector<Geometry>& geometries, GeometryRange 
 Intersector::~Intersector() = default;
 
 std::optional<Hit> Intersector::nearest(Vector3 origin, Vector3 direction, double limit) const {
+  if (!within_embree(origin)) return {};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit ray_hit{};
@@ -279,6 +286,7 @@ std::optional<Hit> Intersector::nearest(Vector3 origin, Vector3 direction, doubl
 }
 
 bool Intersector::blocked(Vector3 origin, Vector3 direction, double limit) const {
+  if (!within_embree(origin)) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray = ray_of(origin, direction, limit);
