@@ -36,7 +36,7 @@ BothForms normal_equations(int band, int border, unsigned seed) {
 
 TEST(BorderedBand, DoesWhatFullMatricesDo) {
   // 1e-9 of the values: the condition of these matrices is below 1e4, that of a double 1e-16.
-  for (const auto& [band, border] : {std::pair{0, 4}, {1, 4}, {5, 6}, {6, 1}, {40, 4}, {40, 6}}) {
+  for (const auto& [band, border] : {std::pair{0, 4}, {1, 4}, {5, 6}, {6, 1}, {40, 4}, {40, 6}, {40, 11}}) {
     const BothForms both = normal_equations(band, border, static_cast<unsigned>(7 * band + border));
     const int n = band + border;
     const BorderedCholesky factor(both.band);

@@ -19,12 +19,12 @@ int below(const BorderedBand& matrix, int column) {
 }  // namespace
 
 BorderedBand::BorderedBand(int band, int border)
-    : band_(band), border_(border), entries_(static_cast<std::size_t>(band + border) * stride) {}
+    : band_(band), border_(border), entries_(static_cast<std::size_t>(band + border) * stride()) {}
 
 void BorderedBand::drop_border(int unknowns) {
-  border_ -= unknowns;
-  entries_.resize(static_cast<std::size_t>(size()) * stride);
-  for (int j = 0; j < size(); ++j) std::fill(column(j) + corner + border_, column(j) + stride, 0.0);
+  BorderedBand kept(band_, border_ - unknowns);
+  for (int j = 0; j < kept.size(); ++j) std::copy_n(column(j), kept.stride(), kept.column(j));
+  *this = std::move(kept);
 }
 
 void BorderedBand::add(double factor, const BorderedBand& other) {
@@ -32,25 +32,27 @@ void BorderedBand::add(double factor, const BorderedBand& other) {
 }
 
 std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vectors) const {
-  std::array<double, lanes> sum{};
+  using Lanes = Eigen::Array<double, 1, lanes>;
+  const auto row = [&](int i) {
+    return Eigen::Map<const Lanes>(vectors.data() + static_cast<std::ptrdiff_t>(i) * lanes);
+  };
+  Lanes sum = Lanes::Zero();
   for (int j = 0; j < size(); ++j) {
     const double* const a = column(j);
-    const double* const x = vectors.data() + static_cast<std::ptrdiff_t>(j) * lanes;
-    double beside[lanes] = {};
-    const auto add = [&](double entry, int row) {
-      for (int k = 0; k < lanes; ++k) beside[k] += entry * x[(row - j) * lanes + k];
-    };
+    Lanes beside = Lanes::Zero();
     if (j < band_)
-      for (int p = 1; p <= below(*this, j); ++p) add(a[p], j + p);
-    for (int r = std::max(0, j - band_ + 1); r < border_; ++r) add(a[corner + r], band_ + r);
-    for (int k = 0; k < lanes; ++k)
-      sum[static_cast<std::size_t>(k)] += x[k] * (at(j, j) * x[k] + 2 * beside[k]);
+      for (int p = 1; p <= below(*this, j); ++p) beside += a[p] * row(j + p);
+    for (int r = std::max(0, j - band_ + 1); r < border_; ++r) beside += a[corner + r] * row(band_ + r);
+    sum += row(j) * (at(j, j) * row(j) + 2 * beside);
   }
-  return sum;
+  std::array<double, lanes> result;
+  Eigen::Map<Lanes>(result.data()) = sum;
+  return result;
 }
 
 BorderedCholesky::BorderedCholesky(BorderedBand matrix) : factor_(std::move(matrix)), good_(true) {
   const int band = factor_.band(), border = factor_.border();
+  per_diagonal_.reserve(static_cast<std::size_t>(factor_.size()));
   for (int j = 0; j < factor_.size() && good_; ++j) {
     double* const l = factor_.column(j);
     const bool in_band = j < band;
@@ -83,28 +85,24 @@ double BorderedCholesky::log_determinant() const {
 
 template <int count>
 void BorderedCholesky::solve_lanes(double* x) const {
+  using Lanes = Eigen::Array<double, 1, count>;
   const int band = factor_.band(), border = factor_.border(), size = factor_.size();
-  double value[count];
+  const auto row = [&](int i) { return Eigen::Map<Lanes>(x + static_cast<std::ptrdiff_t>(i) * count); };
   for (int j = 0; j < size; ++j) {
     const double* const l = factor_.column(j);
-    for (int k = 0; k < count; ++k) value[k] = x[j * count + k] *= per_diagonal_[static_cast<std::size_t>(j)];
-    const auto take = [&](double entry, int row) {
-      for (int k = 0; k < count; ++k) x[row * count + k] -= entry * value[k];
-    };
+    const Lanes value = row(j) * per_diagonal_[static_cast<std::size_t>(j)];
+    row(j) = value;
     if (j < band)
-      for (int p = 1; p <= below(factor_, j); ++p) take(l[p], j + p);
-    for (int r = std::max(0, j - band + 1); r < border; ++r) take(l[corner + r], band + r);
+      for (int p = 1; p <= below(factor_, j); ++p) row(j + p) -= l[p] * value;
+    for (int r = std::max(0, j - band + 1); r < border; ++r) row(band + r) -= l[corner + r] * value;
   }
   for (int j = size - 1; j >= 0; --j) {
     const double* const l = factor_.column(j);
-    for (int k = 0; k < count; ++k) value[k] = x[j * count + k];
-    const auto take = [&](double entry, int row) {
-      for (int k = 0; k < count; ++k) value[k] -= entry * x[row * count + k];
-    };
-    for (int r = std::max(0, j - band + 1); r < border; ++r) take(l[corner + r], band + r);
+    Lanes value = row(j);
+    for (int r = std::max(0, j - band + 1); r < border; ++r) value -= l[corner + r] * row(band + r);
     if (j < band)
-      for (int p = below(factor_, j); p > 0; --p) take(l[p], j + p);
-    for (int k = 0; k < count; ++k) x[j * count + k] = value[k] * per_diagonal_[static_cast<std::size_t>(j)];
+      for (int p = below(factor_, j); p > 0; --p) value -= l[p] * row(j + p);
+    row(j) = value * per_diagonal_[static_cast<std::size_t>(j)];
   }
 }
 
@@ -122,7 +120,6 @@ BorderedBand BorderedCholesky::inverse() const {
   // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
   const int band = factor_.band(), border = factor_.border();
   BorderedBand z(band, border);
-  const auto entry = [&](int i, int j) { return i >= j ? z.at(i, j) : z.at(j, i); };
   for (int j = factor_.size() - 1; j >= 0; --j) {
     int rows[BorderedBand::width + BorderedBand::most_border];
     double l[BorderedBand::width + BorderedBand::most_border];
@@ -131,11 +128,16 @@ BorderedBand BorderedCholesky::inverse() const {
     for (int r = std::max(0, j - band + 1); r < border; ++r) rows[count++] = band + r;
     for (int k = 0; k < count; ++k) l[k] = factor_.at(rows[k], j);
     const double scale = 1 / factor_.at(j, j);
-    for (int i = count - 1; i >= 0; --i) {
-      double sum = 0;
-      for (int k = 0; k < count; ++k) sum += l[k] * entry(rows[i], rows[k]);
-      z.at(rows[i], j) = -sum * scale;
+    double sums[BorderedBand::width + BorderedBand::most_border] = {};
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < i; ++k) {
+        const double beside = z.at(rows[i], rows[k]);
+        sums[i] += l[k] * beside;
+        sums[k] += l[i] * beside;
+      }
+      sums[i] += l[i] * z.at(rows[i], rows[i]);
     }
+    for (int i = 0; i < count; ++i) z.at(rows[i], j) = -sums[i] * scale;
     double sum = 0;
     for (int k = 0; k < count; ++k) sum += l[k] * z.at(rows[k], j);
     z.at(j, j) = (scale - sum) * scale;

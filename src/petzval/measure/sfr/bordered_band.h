@@ -16,8 +16,6 @@ class BorderedBand {
  public:
   static constexpr int width = 5;         ///< places beside the diagonal
   static constexpr int most_border = 11;  ///< unknowns that touch all
-  /// Entries of a column: the diagonal and `width` below it, then one for each unknown of the border.
-  static constexpr int stride = width + 1 + most_border;
 
   /// Several vectors side by side, for what is done with many of them.
   static constexpr int lanes = 8;
@@ -34,9 +32,10 @@ class BorderedBand {
   /// Of the lower half: row ≥ column, both inside the pattern.
   double& at(int row, int column) { return entries_[place(row, column)]; }
   double at(int row, int column) const { return entries_[place(row, column)]; }
-  /// The entries of a column of the band, `stride` of them.
-  double* column(int j) { return entries_.data() + static_cast<std::size_t>(j) * stride; }
-  const double* column(int j) const { return entries_.data() + static_cast<std::size_t>(j) * stride; }
+  /// The entries of a column of the band: the diagonal and `width` below it, then one for each unknown of the
+  /// border.
+  double* column(int j) { return entries_.data() + static_cast<std::size_t>(j) * stride(); }
+  const double* column(int j) const { return entries_.data() + static_cast<std::size_t>(j) * stride(); }
   /// Leaves out the last unknowns of the border.
   void drop_border(int unknowns);
   /// Adds a multiple of a matrix of the same shape.
@@ -45,8 +44,9 @@ class BorderedBand {
   std::array<double, lanes> quadratic(const Block& vectors) const;
 
  private:
+  std::size_t stride() const { return static_cast<std::size_t>(width + 1 + border_); }
   std::size_t place(int row, int column) const {
-    return static_cast<std::size_t>(column) * stride +
+    return static_cast<std::size_t>(column) * stride() +
            static_cast<std::size_t>(row < band_ ? row - column : width + 1 + row - band_);
   }
   int band_ = 0, border_ = 0;

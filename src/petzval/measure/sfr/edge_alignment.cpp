@@ -21,9 +21,7 @@ EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine
   }
   const int half = static_cast<int>(reach / 2) + 1;
   std::vector<int> count(2 * static_cast<std::size_t>(half) + 1);  // of cells two pixels wide
-  const auto cell = [&](double d) {
-    return static_cast<std::size_t>(half + static_cast<int>(std::lround(d / 2)));
-  };
+  const auto cell = [&](double d) { return static_cast<std::size_t>(half + 0.5 + 0.5 * d); };
   for (const EdgeFrame::Place& place : places) ++count[cell(place.distance)];
   const auto middle = static_cast<std::size_t>(half);
   const int enough = std::max(4, count[middle] / 4);

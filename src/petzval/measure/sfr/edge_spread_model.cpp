@@ -346,6 +346,12 @@ std::complex<double> EdgeSpreadModel::transform(double f) const {
          step_;
 }
 
+std::vector<std::complex<double>> EdgeSpreadModel::transforms(std::span<const double> frequencies_cpp) const {
+  std::vector<std::complex<double>> values;
+  for (const double f : frequencies_cpp) values.push_back(transform(f));
+  return values;
+}
+
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
     : model_(model), spread_(model.basis_.splines, model.basis_.border()) {
@@ -380,9 +386,9 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
       rounding_);
 }
 
-void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient, int stride) const {
+void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, std::complex<double> value, double* gradient,
+                                                     int stride) const {
   const int splines = model_.basis_.splines;
-  const std::complex<double> value = model_.transform(f);
   const double modulus = std::abs(value);
   const double real = modulus > 0 ? value.real() / modulus : 1,
                imaginary = modulus > 0 ? value.imag() / modulus : 0;
@@ -401,14 +407,16 @@ void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient,
   });
 }
 
-std::vector<double> EdgeSpreadModel::Deviation::of_moduli(std::span<const double> frequencies_cpp) const {
+std::vector<double> EdgeSpreadModel::Deviation::of_moduli(
+    std::span<const double> frequencies_cpp, std::span<const std::complex<double>> transforms) const {
   constexpr std::size_t lanes = BorderedBand::lanes;
   std::vector<double> deviations;
   for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
     BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
     const std::size_t count = std::min(lanes, frequencies_cpp.size() - first);
     for (std::size_t k = 0; k < count; ++k)
-      gradient_of_modulus(frequencies_cpp[first + k], x.data() + k, BorderedBand::lanes);
+      gradient_of_modulus(frequencies_cpp[first + k], transforms[first + k], x.data() + k,
+                          BorderedBand::lanes);
     model_.factor_.solve_in_place(x);
     std::array<double, lanes> variance = spread_.quadratic(x);
     for (std::size_t k = 0; k < count; ++k) {
@@ -427,8 +435,8 @@ double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Blo
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
   BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
-  for (int k = 0; k < 3; ++k)
-    gradient_of_modulus(f[static_cast<std::size_t>(k)], x.data() + k, BorderedBand::lanes);
+  for (std::size_t k = 0; k < f.size(); ++k)
+    gradient_of_modulus(f[k], model_.transform(f[k]), x.data() + k, BorderedBand::lanes);
   model_.factor_.solve_in_place(x);
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};

@@ -82,6 +82,7 @@ class EdgeSpreadModel {
   const EdgeSpreadOptions& options() const { return options_; }
   /// ∫ E′(d) exp(−2πifd) dd / step.
   std::complex<double> transform(double frequency_cpp) const;
+  std::vector<std::complex<double>> transforms(std::span<const double> frequencies_cpp) const;
   /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.
   double unknowns() const;
   double smoothing() const { return options_.smoothing; }
@@ -113,7 +114,9 @@ class EdgeSpreadModel {
    public:
     Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
               const QuantisationNoise& rounding);
-    std::vector<double> of_moduli(std::span<const double> frequencies_cpp) const;
+    /// \param transforms  of the model, at the frequencies.
+    std::vector<double> of_moduli(std::span<const double> frequencies_cpp,
+                                  std::span<const std::complex<double>> transforms) const;
     /// How what noise does to |transform| at three frequencies hangs together: correlations of the first and
     /// second, first and third, second and third.
     std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
@@ -121,7 +124,8 @@ class EdgeSpreadModel {
    private:
     double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
     /// d|transform|/d(right side), into every `stride`-th place.
-    void gradient_of_modulus(double frequency_cpp, double* gradient, int stride) const;
+    void gradient_of_modulus(double frequency_cpp, std::complex<double> transform, double* gradient,
+                             int stride) const;
 
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations

@@ -181,13 +181,16 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
 std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
                                       const PixelLattice& lattice) {
   const Axis axis = axis_of(edge);
-  const double reach = std::max(edge.reach_dark_px, edge.reach_bright_px) + axis.half;
-  const auto range = [&](double middle, int size) {
+  // The upright box about the turned one.
+  const double across = std::max(edge.reach_dark_px, edge.reach_bright_px),
+               along = std::max(-edge.sampled_from, edge.sampled_to);
+  const auto range = [](double middle, double reach, int size) {
     return std::pair{std::clamp(static_cast<int>(middle - reach) - 1, 0, size),
                      std::clamp(static_cast<int>(middle + reach) + 2, 0, size)};
   };
-  const auto [left, right] = range(axis.middle.x, plane.columns);
-  const auto [top, bottom] = range(axis.middle.y, plane.rows);
+  const double ux = std::abs(axis.ux), uy = std::abs(axis.uy);
+  const auto [left, right] = range(axis.middle.x, along * ux + across * uy, plane.columns);
+  const auto [top, bottom] = range(axis.middle.y, along * uy + across * ux, plane.rows);
   std::vector<EdgeSample> samples;
   for (int row = top; row < bottom; ++row)
     for (int column = left; column < right; ++column) {

@@ -145,12 +145,13 @@ class Uncertainty {
     constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
     tail_ = extrapolated / std::min(-fit.profile().low, fit.profile().high);
   }
-  std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp) const {
-    std::vector<double> deviations = noise_.of_moduli(frequencies_cpp);
+  /// \param transforms  of the model, at the frequencies.
+  std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp,
+                                const std::vector<std::complex<double>>& transforms) const {
+    std::vector<double> deviations = noise_.of_moduli(frequencies_cpp, transforms);
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       const double f = frequencies_cpp[i];
-      const double other =
-          variant_ ? std::abs(variant_->transform(f)) - std::abs(fit_.model().transform(f)) : 0;
+      const double other = variant_ ? std::abs(variant_->transform(f)) - std::abs(transforms[i]) : 0;
       constexpr double all_of_it_cpp = 0.02;
       const double model = std::hypot(other, tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
       deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
@@ -178,7 +179,7 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Un
     result.mtf.push_back(find_level(model, percent / 100.0, contrast, step));
     if (std::isfinite(result.mtf.back().frequency_cpp)) passed.push_back(result.mtf.back().frequency_cpp);
   }
-  const std::vector<double> deviations = uncertainty.of_moduli(passed);
+  const std::vector<double> deviations = uncertainty.of_moduli(passed, model.transforms(passed));
   auto of_modulus = deviations.begin();
   for (MtfLevel& level : result.mtf) {
     if (!std::isfinite(level.frequency_cpp)) continue;
@@ -232,12 +233,12 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   const EdgeSpreadModel::Deviation deviation(model, variance, rounding);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
   const Uncertainty uncertainty(fit, deviation);
-  result.sfr_deviation = uncertainty.of_moduli(result.frequencies_cpp);
-  for (std::size_t i = 0; i < result.frequencies_cpp.size(); ++i) {
+  const std::vector<std::complex<double>> transforms = model.transforms(result.frequencies_cpp);
+  result.sfr_deviation = uncertainty.of_moduli(result.frequencies_cpp, transforms);
+  for (std::size_t i = 0; i < transforms.size(); ++i) {
     const double f = result.frequencies_cpp[i];
-    const std::complex<double> value = model.transform(f);
-    result.sfr.push_back(std::abs(value));
-    result.phase_rad.push_back(std::arg(value));
+    result.sfr.push_back(std::abs(transforms[i]));
+    result.phase_rad.push_back(std::arg(transforms[i]));
     result.sfr_deviation[i] = std::hypot(result.sfr_deviation[i], alias_deviation(model, fit.comb_px(), f));
   }
   // With rows half a pixel apart the alias of Nyquist's frequency lies beyond what lenses and pixels

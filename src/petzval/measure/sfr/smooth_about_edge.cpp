@@ -25,7 +25,7 @@ std::vector<double> cosine_transform(int count) {
 const std::vector<double>& cosine_transform_of(int count) {
   static const auto tables = [] {
     std::vector<std::vector<double>> all;
-    for (int n = 0; n <= SmoothAboutEdge::most_nodes; ++n) all.push_back(cosine_transform(n));
+    for (int n = 0; n <= SmoothAboutEdge::most_along; ++n) all.push_back(cosine_transform(n));
     return all;
   }();
   return tables[static_cast<std::size_t>(count)];
@@ -34,7 +34,7 @@ const std::vector<double>& cosine_transform_of(int count) {
 /// Of values `stride` apart.
 void to_coefficients(double* values, int count, int stride) {
   const double* cosines = cosine_transform_of(count).data();
-  double result[SmoothAboutEdge::most_nodes];
+  double result[SmoothAboutEdge::most_along];
   for (int k = 0; k < count; ++k, cosines += count) {
     result[k] = 0;
     for (int i = 0; i < count; ++i) result[k] += cosines[i] * values[i * stride];
@@ -58,42 +58,35 @@ SmoothAboutEdge::SmoothAboutEdge(const std::function<double(double x, double y)>
       per_half_(2 / std::max(1e-9, range.high - range.low)),
       nodes_(nodes) {
   line_.bend.clear();
-  for (int j = 0; j < nodes.across; ++j)
-    for (int i = 0; i < nodes.along; ++i) {
+  coefficients_.assign(static_cast<std::size_t>(nodes.along), Across::Zero());
+  for (int i = 0; i < nodes.along; ++i)
+    for (int j = 0; j < nodes.across; ++j) {
       const double t = line.half_length * chebyshev_node(i, nodes.along),
                    d = middle_ + chebyshev_node(j, nodes.across) / per_half_;
-      coefficients_.push_back(
-          function(line.centre_x + d * cos_ - t * sin_, line.centre_y + d * sin_ + t * cos_));
+      coefficients_[static_cast<std::size_t>(i)][j] =
+          function(line.centre_x + d * cos_ - t * sin_, line.centre_y + d * sin_ + t * cos_);
     }
-  for (int j = 0; j < nodes.across; ++j)
-    to_coefficients(coefficients_.data() + j * nodes.along, nodes.along, 1);
-  for (int i = 0; i < nodes.along; ++i) to_coefficients(coefficients_.data() + i, nodes.across, nodes.along);
   double sum = 0;
-  for (const double c : coefficients_) sum += std::abs(c);
+  for (Across& across : coefficients_) to_coefficients(across.data(), nodes.across, 1);
+  for (int j = 0; j < nodes.across; ++j)
+    to_coefficients(coefficients_.front().data() + j, nodes.along, most_across);
+  for (const Across& across : coefficients_) sum += across.abs().sum();
   constexpr double negligible = 1e-6;
-  for (int j = 0; j < nodes.across; ++j) {
-    int& used = used_along_[j] = nodes.along;
-    while (used > 0 && !(std::abs(coefficients_[static_cast<std::size_t>(j * nodes.along + used - 1)]) >
-                         negligible * sum))
-      --used;
-  }
+  while (!coefficients_.empty() && !(coefficients_.back().abs().maxCoeff() > negligible * sum))
+    coefficients_.pop_back();
 }
 
 double SmoothAboutEdge::operator()(double x, double y) const {
   const double dx = x - line_.centre_x, dy = y - line_.centre_y;
-  double along[most_nodes], across[most_nodes];
-  chebyshev_polynomials(std::clamp((dy * cos_ - dx * sin_) / line_.half_length, -1.0, 1.0), nodes_.along,
+  double along[most_along];
+  Across across;
+  chebyshev_polynomials(std::clamp((dy * cos_ - dx * sin_) / line_.half_length, -1.0, 1.0), most_along,
                         along);
-  chebyshev_polynomials(std::clamp((dx * cos_ + dy * sin_ - middle_) * per_half_, -1.0, 1.0), nodes_.across,
-                        across);
-  double sum = 0;
-  const double* c = coefficients_.data();
-  for (int j = 0; j < nodes_.across; ++j, c += nodes_.along) {
-    double row = 0;
-    for (int i = 0; i < used_along_[j]; ++i) row += c[i] * along[i];
-    sum += row * across[j];
-  }
-  return sum;
+  chebyshev_polynomials(std::clamp((dx * cos_ + dy * sin_ - middle_) * per_half_, -1.0, 1.0), most_across,
+                        across.data());
+  Across sum = Across::Zero();
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) sum += along[i] * coefficients_[i];
+  return (sum * across).sum();
 }
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <petzval/measure/sfr/edge_line.h>
 
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 
@@ -22,7 +23,7 @@ class SmoothAboutEdge {
   struct Nodes {
     int along = 13, across = 11;
   };
-  static constexpr int most_nodes = 13;
+  static constexpr int most_along = 13, most_across = 12;
   SmoothAboutEdge(const std::function<double(double x, double y)>& function, const EdgeLine& line,
                   DistanceRange range, Nodes nodes);
   double operator()(double x, double y) const;
@@ -31,8 +32,9 @@ class SmoothAboutEdge {
   EdgeLine line_;  ///< without its bend
   double cos_, sin_, middle_, per_half_;
   Nodes nodes_;
-  std::vector<double> coefficients_;  ///< those along next to each other
-  int used_along_[most_nodes] = {};   ///< of each across; the others are nearly nothing
+  using Across = Eigen::Array<double, most_across, 1>;
+  std::vector<Across>
+      coefficients_;  ///< of each polynomial along; those that are nearly nothing are left out
 };
 
 }  // namespace petzval
