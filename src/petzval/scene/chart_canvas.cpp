@@ -6,8 +6,8 @@
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/chart_canvas.h>
-#include <petzval/scene/outlines.h>
 #include <petzval/scene/scene_light.h>
+#include <petzval/scene/shape_cuts.h>
 #include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/scene/lettering.h>
-#include <petzval/scene/outlines.h>
+#include <petzval/scene/shape_cuts.h>
 
 #include <array>
 #include <cmath>
@@ -116,7 +116,7 @@ std::vector<Point> stroke_outline(Point from, Point to, double width) {
 }  // namespace
 
 void add_text(Shape& shape, std::string_view text, double left, double top, double height) {
-  std::vector<Outline> strokes;
+  std::vector<std::vector<Point>> strokes;
   add_text(strokes, text, left, top, height);
   const Shape letters = united(strokes);
   for (const Shape::Edge& edge : letters.edges()) shape.add_edge(edge);

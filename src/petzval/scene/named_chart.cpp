@@ -3,7 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/scene/named_chart.h>
-#include <petzval/scene/outlines.h>
+#include <petzval/scene/shape_cuts.h>
 #include <petzval/scene/star_field.h>
 
 #include <algorithm>

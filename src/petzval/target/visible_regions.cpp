@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/scene/outlines.h>
+#include <petzval/scene/shape_cuts.h>
 #include <petzval/target/meetings.h>
 #include <petzval/target/visible_regions.h>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed outlines that overlap, cut so that they do not (Vatti's algorithm, the Clipper library).
+// Closed outlines (the last corner is joined to the first) that overlap, cut so that they do not (Vatti's
+// algorithm, the Clipper library).
 #pragma once
 
 #include <petzval/scene/shape.h>
@@ -10,15 +11,12 @@
 
 namespace petzval {
 
-/// A closed polygon: the last corner is joined to the first.
-using Outline = std::vector<Point>;
-
 /// Corners as Clipper has them: whole numbers, 2^-24 of a sample or pixel apart.
-ClipperLib::Paths to_clipper(std::span<const Outline> outlines);
-std::vector<Outline> from_clipper(const ClipperLib::Paths& paths);
+ClipperLib::Paths to_clipper(std::span<const std::vector<Point>> outlines);
+std::vector<std::vector<Point>> from_clipper(const ClipperLib::Paths& paths);
 
 /// What lies within any of the outlines, each either way round, as a shape that covers it once.
-Shape united(std::span<const Outline> outlines);
+Shape united(std::span<const std::vector<Point>> outlines);
 
 /// What later shapes leave of each. Shapes that no later one may overlap stay as they are. Of shapes along
 /// one line each keeps its side of it, so that what they cover of a pixel adds up to 1.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/units.h>
 #include <petzval/scene/lettering.h>
-#include <petzval/scene/outlines.h>
+#include <petzval/scene/shape_cuts.h>
 
 #include <array>
 #include <cmath>
@@ -90,7 +90,8 @@ TEST(UncoveredParts, LeavesAShapeThatNothingCoversAsItIs) {
 
 // A cross of two bars, either of them either way round.
 TEST(United, CoversWhatOutlinesShareOnce) {
-  const std::vector<Outline> bars{{{0, 4}, {10, 4}, {10, 6}, {0, 6}}, {{4, 0}, {4, 10}, {6, 10}, {6, 0}}};
+  const std::vector<std::vector<Point>> bars{{{0, 4}, {10, 4}, {10, 6}, {0, 6}},
+                                             {{4, 0}, {4, 10}, {6, 10}, {6, 0}}};
   const Shape cross = united(bars);
   double area = 0;
   std::vector<double> coverage(10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/scene/outlines.h>
+#include <petzval/scene/shape_cuts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 constexpr double clipper_scale = 1 << 24;
 
 /// The outlines of a shape: edges follow one another until one returns to where the first began.
-std::vector<Outline> outlines_of(const Shape& shape) {
-  std::vector<Outline> outlines;
+std::vector<std::vector<Point>> outlines_of(const Shape& shape) {
+  std::vector<std::vector<Point>> outlines;
   bool closed = true;
   for (const Shape::Edge& edge : shape.edges()) {
     if (closed) outlines.emplace_back();
@@ -26,7 +26,7 @@ std::vector<Outline> outlines_of(const Shape& shape) {
 /// Clipper directs outlines as shapes have them: holes run the other way round.
 Shape shape_of(const ClipperLib::Paths& paths) {
   Shape shape;
-  for (const Outline& outline : from_clipper(paths))
+  for (const std::vector<Point>& outline : from_clipper(paths))
     for (std::size_t i = 0; i < outline.size(); ++i)
       shape.add_edge({outline[i], outline[(i + 1) % outline.size()]});
   return shape;
@@ -48,9 +48,9 @@ struct Box {
 
 }  // namespace
 
-ClipperLib::Paths to_clipper(std::span<const Outline> outlines) {
+ClipperLib::Paths to_clipper(std::span<const std::vector<Point>> outlines) {
   ClipperLib::Paths paths;
-  for (const Outline& outline : outlines) {
+  for (const std::vector<Point>& outline : outlines) {
     ClipperLib::Path path;
     for (const Point& p : outline)
       path.emplace_back(std::llround(p.x * clipper_scale), std::llround(p.y * clipper_scale));
@@ -59,19 +59,19 @@ ClipperLib::Paths to_clipper(std::span<const Outline> outlines) {
   return paths;
 }
 
-std::vector<Outline> from_clipper(const ClipperLib::Paths& paths) {
-  std::vector<Outline> outlines;
+std::vector<std::vector<Point>> from_clipper(const ClipperLib::Paths& paths) {
+  std::vector<std::vector<Point>> outlines;
   for (const ClipperLib::Path& path : paths) {
-    Outline& outline = outlines.emplace_back();
+    std::vector<Point>& outline = outlines.emplace_back();
     for (const ClipperLib::IntPoint& p : path)
       outline.push_back({static_cast<double>(p.X) / clipper_scale, static_cast<double>(p.Y) / clipper_scale});
   }
   return outlines;
 }
 
-Shape united(std::span<const Outline> outlines) {
+Shape united(std::span<const std::vector<Point>> outlines) {
   Shape directed;  // as add_polygon() turns them
-  for (const Outline& outline : outlines) directed.add_polygon(outline);
+  for (const std::vector<Point>& outline : outlines) directed.add_polygon(outline);
   ClipperLib::Clipper clipper;
   clipper.AddPaths(to_clipper(outlines_of(directed)), ClipperLib::ptSubject, true);
   ClipperLib::Paths all;
