@@ -56,6 +56,9 @@ TEST(UncoveredParts, EachPlaceBelongsToTheLastShapeOverIt) {
   EXPECT_GT(covered, 10000);  // else nothing was tried
 }
 
+// Corners are rounded to 2^-24, and each moves an edge of some pixels by as much.
+constexpr double of_corners = 1e-6;
+
 // Pixels that the border between two shapes crosses are covered by both together: none of the ground shows.
 TEST(UncoveredParts, MeetWithoutAGap) {
   const double border = 4.3, lean = 0.4;
@@ -72,7 +75,7 @@ TEST(UncoveredParts, MeetWithoutAGap) {
       for (std::size_t column = 0; column < sum.size(); ++column) sum[column] += coverage[column];
     }
     for (std::size_t column = 1; column < 9; ++column)
-      EXPECT_NEAR(sum[column], 1, 1e-6) << row << ' ' << column;
+      EXPECT_NEAR(sum[column], 1, of_corners) << row << ' ' << column;
   }
 }
 
@@ -99,7 +102,7 @@ TEST(United, CoversWhatOutlinesShareOnce) {
     cross.coverage(row, coverage);
     for (const double pixel : coverage) area += pixel;
   }
-  EXPECT_NEAR(area, 20 + 20 - 4, 1e-6);
+  EXPECT_NEAR(area, 20 + 20 - 4, of_corners);
   EXPECT_EQ(std::abs(winding(cross, {5, 5})), 1);
 }
 

@@ -18,8 +18,8 @@ std::vector<std::vector<Point>> from_clipper(const ClipperLib::Paths& paths);
 /// What lies within any of the outlines, each either way round, as a shape that covers it once.
 Shape united(std::span<const std::vector<Point>> outlines);
 
-/// What later shapes leave of each. Shapes that no later one may overlap stay as they are. Of shapes along
-/// one line each keeps its side of it, so that what they cover of a pixel adds up to 1.
+/// What later shapes leave of each. Shapes that no later one may overlap stay as they are. Where shapes share
+/// a border, what they cover of a pixel on it adds up to 1.
 std::vector<Shape> uncovered_parts(std::span<const Shape* const> shapes);
 
 }  // namespace petzval
