@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One state of the bench after the other, faster than it can show them.
+#include <petzval/live/bench_picture.h>
+
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -73,6 +75,23 @@ TEST(BenchMoves, EndWithWhatAFreshBenchShows) {
   EXPECT_TRUE(picture == fresh_picture);
   EXPECT_TRUE(psf == fresh_psf);
   EXPECT_FALSE(picture == designed_picture);
+}
+
+TEST(BenchPicture, HasAsManyPixelsWhateverPreviewCameBeforeIt) {
+  const LiveNames names = bundled_live_names();
+  const auto state = std::get<BenchState>(parse_live_message(bench_state(1).dump(), names));
+  const CoatedLens used{read_lens("achromat-50mm").lens};
+  int columns = 0;
+  const SendReply keep = [&](const LiveReply& reply) { columns = json::parse(reply.json)["columns"]; };
+  const auto show = [&](BenchPicture& pictures, PictureQuality quality) {
+    pictures.show(state, used, BenchScene{.path = state.scene}, state.sensor, quality, {}, keep);
+    return columns;
+  };
+  BenchPicture at_once, after_preview;
+  const int pixels = show(at_once, PictureQuality::full);
+  EXPECT_LT(pixels, 640);  // the blur of this lens is wide
+  show(after_preview, PictureQuality::preview);
+  EXPECT_EQ(show(after_preview, PictureQuality::full), pixels);
 }
 
 }  // namespace

@@ -168,15 +168,20 @@ const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), p
 
 }  // namespace
 
-int BenchPicture::most_columns(const Stage& stage) const {
-  const bool finest = stage.quality == PictureQuality::finest;
+int BenchPicture::most_columns(const Stage& stage) {
+  const QualityCost& coarse = preview_costs[0];
   // A picture of 31 bands then takes less than 200 MB.
   constexpr double most_pixels = 1.6e6;
+  const bool finest = stage.quality == PictureQuality::finest;
   const int most = finest ? columns_for_pixels(stage.sensor_path, most_pixels) : stage.cost.most_columns;
-  const Shot& preview = previews_[preview_size_];
-  if (stage.quality == PictureQuality::preview || preview.light_key != light_key_of(stage.state)) return most;
-  return columns_for(preview.spread_um, preview.sensor.binned.sensor.geometry.width_mm(),
-                     preview_costs[0].most_columns, most);
+  if (stage.quality == PictureQuality::preview) return most;
+  // By a table of its own, lest a picture depend on which preview came before it.
+  ShownSensor sensor;
+  sensor.choose(stage.sensor_path, coarse.most_columns);
+  const TableCamera optics =
+      bench_optics(stage.used, sensor.binned.sensor, coarse, bands_of(stage.scene, coarse), stage.context);
+  return columns_for(spread_um(optics.table), sensor.binned.sensor.geometry.width_mm(), coarse.most_columns,
+                     most);
 }
 
 void BenchPicture::form_image_light(Shot& shot, const Stage& stage) {

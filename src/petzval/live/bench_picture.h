@@ -58,7 +58,8 @@ class BenchPicture {
   void form_image_light(Shot& shot, const Stage& stage);
   void form_stray_light(Shot& shot, const Stage& stage);
   nlohmann::json message_of(const Shot& shot, const Stage& stage) const;
-  int most_columns(const Stage& stage) const;
+  /// Few where blur is wide. The same whatever was shown before.
+  static int most_columns(const Stage& stage);
   /// How many pixels a preview has from now on, by how long the last one took.
   void choose_preview(double seconds);
 
