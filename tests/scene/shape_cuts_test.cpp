@@ -31,6 +31,22 @@ std::vector<const Shape*> pointers(const std::vector<Shape>& shapes) {
   return result;
 }
 
+template <typename Place>
+void expect_last_shapes(const std::vector<Shape>& shapes, const Place& place) {
+  const std::vector<Shape> parts = uncovered_parts(pointers(shapes));
+  ASSERT_EQ(parts.size(), shapes.size());
+  int covered = 0;
+  for (int sample = 0; sample < 20000; ++sample) {
+    const Point at = place();
+    std::size_t last = shapes.size();
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (winding(shapes[i], at) != 0) last = i;
+    covered += last < shapes.size();
+    for (std::size_t i = 0; i < parts.size(); ++i) ASSERT_EQ(std::abs(winding(parts[i], at)), i == last) << i;
+  }
+  EXPECT_GT(covered, 10000);  // else nothing was tried
+}
+
 TEST(UncoveredParts, EachPlaceBelongsToTheLastShapeOverIt) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> place(0, 40), size(2, 12), angle(-3, 3);
@@ -42,18 +58,23 @@ TEST(UncoveredParts, EachPlaceBelongsToTheLastShapeOverIt) {
     else
       shapes[i].add_square(centre, size(random), angle(random));
   }
-  const std::vector<Shape> parts = uncovered_parts(pointers(shapes));
-  ASSERT_EQ(parts.size(), shapes.size());
-  int covered = 0;
-  for (int sample = 0; sample < 20000; ++sample) {
-    const Point at{place(random), place(random)};
-    std::size_t last = shapes.size();
-    for (std::size_t i = 0; i < shapes.size(); ++i)
-      if (winding(shapes[i], at) != 0) last = i;
-    covered += last < shapes.size();
-    for (std::size_t i = 0; i < parts.size(); ++i) ASSERT_EQ(std::abs(winding(parts[i], at)), i == last) << i;
+  expect_last_shapes(shapes, [&] { return Point{place(random), place(random)}; });
+}
+
+// As many outlines as are cut by halves: letters with holes under two gratings.
+TEST(UncoveredParts, ManyOutlinesBelongToTheLastShapeOverThem) {
+  constexpr int lines = 120;
+  std::vector<Shape> shapes(3);
+  for (int row = 0; row < 20; ++row) add_text(shapes[0], "BO8QR", 1.5, 1 + 6 * row, 5);
+  for (int i = 0; i < lines; ++i) {
+    const double x = 0.3 * i, slant = 4;
+    shapes[1].add_polygon(
+        std::array<Point, 4>{{{x, 0}, {x + 0.1, 0}, {x + 0.1 + slant, 120}, {x + slant, 120}}});
+    shapes[2].add_rectangle(0, i, 40, i + 0.45);
   }
-  EXPECT_GT(covered, 10000);  // else nothing was tried
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> x(0, 40), y(0, 120);
+  expect_last_shapes(shapes, [&] { return Point{x(random), y(random)}; });
 }
 
 // Corners are rounded to 2^-24, and each moves an edge of some pixels by as much.

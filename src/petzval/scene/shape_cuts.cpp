@@ -2,8 +2,11 @@
 #include <petzval/scene/shape_cuts.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 
 namespace petzval {
 
@@ -32,19 +35,94 @@ Shape shape_of(const ClipperLib::Paths& paths) {
   return shape;
 }
 
-struct Box {
-  Point low{1e300, 1e300}, high{-1e300, -1e300};
+using ClipperLib::cInt;
+using ClipperLib::Path;
+using ClipperLib::Paths;
 
-  explicit Box(const Shape& shape) {
-    for (const Shape::Edge& edge : shape.edges()) {
-      low = {std::min(low.x, edge.from.x), std::min(low.y, edge.from.y)};
-      high = {std::max(high.x, edge.from.x), std::max(high.y, edge.from.y)};
-    }
+struct Box {
+  std::array<cInt, 2> low{}, high{};  ///< by axis
+
+  explicit Box(const Paths& paths) {
+    low.fill(std::numeric_limits<cInt>::max());
+    high.fill(std::numeric_limits<cInt>::min());
+    for (const Path& path : paths)
+      for (const ClipperLib::IntPoint& p : path) {
+        low = {std::min(low[0], p.X), std::min(low[1], p.Y)};
+        high = {std::max(high[0], p.X), std::max(high[1], p.Y)};
+      }
   }
+  explicit Box(const Path& path) : Box(Paths{path}) {}
   bool overlaps(const Box& other) const {
-    return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
+    return low[0] < other.high[0] && other.low[0] < high[0] && low[1] < other.high[1] &&
+           other.low[1] < high[1];
+  }
+  bool contains(const Box& other) const {
+    return low[0] <= other.low[0] && other.high[0] <= high[0] && low[1] <= other.low[1] &&
+           other.high[1] <= high[1];
+  }
+  cInt length(int axis) const { return high[axis] - low[axis]; }
+  Path outline() const {
+    return {{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}};
   }
 };
+
+Paths result_of(ClipperLib::ClipType type, const Paths& subject, const Paths& clip) {
+  ClipperLib::Clipper clipper;
+  clipper.AddPaths(subject, ClipperLib::ptSubject, true);
+  clipper.AddPaths(clip, ClipperLib::ptClip, true);
+  Paths result;
+  clipper.Execute(type, result, ClipperLib::pftPositive, ClipperLib::pftPositive);
+  return result;
+}
+
+void append(Paths& to, const Paths& paths) {
+  to.insert(to.end(), paths.begin(), paths.end());
+}
+
+/// What lies in a box.
+Paths within(const Paths& paths, const Box& box) {
+  Paths inside, across;
+  for (const Path& path : paths) {
+    const Box reach(path);
+    if (box.overlaps(reach)) (box.contains(reach) ? inside : across).push_back(path);
+  }
+  if (!across.empty()) append(inside, result_of(ClipperLib::ctIntersection, across, {box.outline()}));
+  return inside;
+}
+
+Paths near(const Paths& paths, const Box& box) {
+  Paths result;
+  std::ranges::copy_if(paths, std::back_inserter(result),
+                       [&](const Path& path) { return box.overlaps(Box(path)); });
+  return result;
+}
+
+/// What covers leave of a figure is added to `rest`. Clipper's time grows with the square of the number of
+/// outlines, so many of them are cut by halves.
+void subtract(const Paths& figure, const Paths& covers, Paths& rest) {
+  if (figure.empty() || covers.empty()) return append(rest, figure);
+  constexpr std::size_t few = 64;
+  const std::size_t outlines = figure.size() + covers.size();
+  if (outlines > few) {
+    const Box whole(figure);
+    const int axis = whole.length(0) >= whole.length(1) ? 0 : 1;
+    std::array<Box, 2> halves{whole, whole};
+    halves[0].high[axis] = halves[1].low[axis] = whole.low[axis] + whole.length(axis) / 2;
+    std::array<Paths, 2> parts, near_covers;
+    std::size_t most = 0;
+    for (int i = 0; i < 2; ++i) {
+      parts[i] = within(figure, halves[i]);
+      near_covers[i] = near(covers, halves[i]);
+      most = std::max(most, parts[i].size() + near_covers[i].size());
+    }
+    // Where all of them meet in one place, halves help no more.
+    if (most * 4 < outlines * 3) {
+      for (int i = 0; i < 2; ++i) subtract(parts[i], near_covers[i], rest);
+      return;
+    }
+  }
+  append(rest, result_of(ClipperLib::ctDifference, figure, covers));
+}
 
 }  // namespace
 
@@ -72,32 +150,27 @@ std::vector<std::vector<Point>> from_clipper(const ClipperLib::Paths& paths) {
 Shape united(std::span<const std::vector<Point>> outlines) {
   Shape directed;  // as add_polygon() turns them
   for (const std::vector<Point>& outline : outlines) directed.add_polygon(outline);
-  ClipperLib::Clipper clipper;
-  clipper.AddPaths(to_clipper(outlines_of(directed)), ClipperLib::ptSubject, true);
-  ClipperLib::Paths all;
-  clipper.Execute(ClipperLib::ctUnion, all, ClipperLib::pftPositive, ClipperLib::pftPositive);
-  return shape_of(all);
+  return shape_of(result_of(ClipperLib::ctUnion, to_clipper(outlines_of(directed)), {}));
 }
 
 std::vector<Shape> uncovered_parts(std::span<const Shape* const> shapes) {
+  std::vector<Paths> paths;
   std::vector<Box> boxes;
-  for (const Shape* shape : shapes) boxes.emplace_back(*shape);
+  for (const Shape* shape : shapes) {
+    paths.push_back(to_clipper(outlines_of(*shape)));
+    boxes.emplace_back(paths.back());
+  }
   std::vector<Shape> parts;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    ClipperLib::Paths covers;
+    Paths covers;
     for (std::size_t later = i + 1; later < shapes.size(); ++later)
-      if (boxes[i].overlaps(boxes[later]))
-        for (ClipperLib::Path& path : to_clipper(outlines_of(*shapes[later])))
-          covers.push_back(std::move(path));
+      if (boxes[i].overlaps(boxes[later])) append(covers, near(paths[later], boxes[i]));
     if (covers.empty()) {
       parts.push_back(*shapes[i]);
       continue;
     }
-    ClipperLib::Clipper clipper;
-    clipper.AddPaths(to_clipper(outlines_of(*shapes[i])), ClipperLib::ptSubject, true);
-    clipper.AddPaths(covers, ClipperLib::ptClip, true);
-    ClipperLib::Paths rest;
-    clipper.Execute(ClipperLib::ctDifference, rest, ClipperLib::pftPositive, ClipperLib::pftPositive);
+    Paths rest;
+    subtract(paths[i], covers, rest);
     parts.push_back(shape_of(rest));
   }
   return parts;
