@@ -7,8 +7,8 @@ if(TARGET petzval_program AND CHROMIUM AND CHROMEDRIVER AND no_selenium EQUAL 0)
   foreach(what IN ITEMS page scenes)
     add_test(NAME browser.live_${what} COMMAND Python3::Interpreter ${CMAKE_CURRENT_LIST_DIR}/test_live_${what}.py
       $<TARGET_FILE:petzval_program> ${CHROMIUM} ${CHROMEDRIVER})
-    # A browser and pictures on every core: beside nothing else.
-    set_tests_properties(browser.live_${what} PROPERTIES RUN_SERIAL ON TIMEOUT 1500 ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+    # Nothing in them depends on time. They are begun first, for they are the longest, and one after the other.
+    set_tests_properties(browser.live_${what} PROPERTIES RESOURCE_LOCK browser COST 1000 TIMEOUT 1500 ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
   endforeach()
 else()
   message(STATUS "no test in a browser: it wants chromium, chromium-driver and python3-selenium")

@@ -128,7 +128,8 @@ class Render(ProgramTest):
 
     def test_diffracts(self):
         def picture(*options):
-            self.assert_succeeds("render", "s.pbrt", *LENS, "--f-number", "64", "--spp", "8", "--quiet", *options, "-o", "p.npy")
+            self.assert_succeeds("render", "s.pbrt", *LENS, "--f-number", "64", "--spp", "8", "--wavelengths", "550", "--quiet",
+                                 *options, "-o", "p.npy")
             return (self.folder / "p.npy").read_bytes()
         waves = picture("--diffraction", "--threads", "1")
         self.assertEqual(waves, picture("--diffraction", "--threads", "2"))
