@@ -132,32 +132,6 @@ TEST(FindEdges, CornersAreWhereSidesMeetInNoise) {
   }
 }
 
-TEST(FindEdges, ArcsStayArcs) {
-  // A square of 120 pixels with two corners of a radius of 16: sides end where the arcs begin.
-  TargetScene scene;
-  std::vector<Vertex> corners{{60, 60}};
-  for (const double turned_deg : {0.0, 90.0})
-    for (int i = 0; i <= 30; ++i) {
-      const double angle = (turned_deg - 90 + 3 * i) * M_PI / 180;
-      corners.push_back({164 + 16 * std::cos(angle), (turned_deg == 0 ? 76 : 164) + 16 * std::sin(angle)});
-    }
-  corners.push_back({60, 180});
-  scene.polygons.push_back({{corners}, 0, 0});
-  const Shot shot = shoot(scene, 240, 8);
-  int found = 0;
-  for (const FoundEdge& edge : find_edges(shot.plane).edges) {
-    const bool left = std::max(edge.from.x, edge.to.x) < 70;
-    // Above and below 104 pixels are straight, on the right 88. The tolerance of outlines adds 5 at an arc.
-    if (left) {
-      EXPECT_NEAR(edge.length_px(), 120, 2);
-    } else {
-      EXPECT_LT(edge.length_px(), 104 + 8);
-    }
-    ++found;
-  }
-  EXPECT_GE(found, 4);
-}
-
 TEST(FindEdges, WhatIsMissingFromAHalfPlaneIsAnAreaIntegral) {
   // Far beyond the edge on the bright side of a square 100 px wide, against a sum over cells of 1/9 px².
   const Shot shot = shoot(square_at(0), 240, 8);
