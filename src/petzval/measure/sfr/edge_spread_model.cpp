@@ -11,6 +11,8 @@ namespace petzval {
 namespace {
 
 constexpr double b = EdgeSpreadBasis::scale_px;
+static_assert(EdgeSpreadBasis::closed_forms + EdgeSpreadBasis::light_terms.back() + EdgeShapes::count - 1 <=
+              BorderedBand::most_border);
 
 /// Values and slopes [1/knot] of the six quintic cardinal B-splines that cover an interval between knots, at
 /// a share 0 ≤ t < 1 of it.
