@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Masks, boxes, poses and flow of three-dimensional items.
 #include <gtest/gtest.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/dataset/dataset.h>
 #include <petzval/dataset/object_masks.h>
@@ -93,6 +94,32 @@ TEST(Dataset, ItemsSayThatTheirLightIsDenoised) {
   // Only rendered light has noise that a denoiser takes out.
   text.replace(text.find("\"world\": \"ball.pbrt\""), 20, "\"scene\": \"colorchecker\"");
   EXPECT_THROW(parse_recipe(text, "recipe.json", ""), InputError);
+}
+
+// Worlds are built once, under a lock, by loops that wait for other threads: whoever builds one must not
+// begin another item meanwhile, which would ask for the same lock.
+TEST(Dataset, ManyThreadsMakeItemsOfManyWorlds) {
+  const Scratch scratch;
+  const std::string text = ball, shape = "Shape \"sphere\"";
+  json names = json::array();
+  for (int i = 0; i < 8; ++i) {
+    names.push_back("ball" + std::to_string(i) + ".pbrt");
+    // The table of a coating's albedo is such a loop.
+    const std::string material =
+        "Material \"coateddiffuse\" \"float eta\" " + std::to_string(1.3 + 0.05 * i) + "\n";
+    std::string world = text;
+    scratch.with(names.back().get<std::string>(), world.insert(world.find(shape), material));
+  }
+  const Recipe recipe =
+      read_recipe(scratch.with("recipe.json", R"({"format": "petzval-dataset/1", "items": 32,
+    "parameters": {"lens": "dgauss-50mm", "world": {"choose": )" +
+                                                  names.dump() + R"(}, "sensor": "example-vga",
+      "focus_distance_m": 2},
+    "sensor_set": ["columns=32", "rows=24", "pitch_um=800"], "wavelengths_nm": "550", "samples_per_pixel": 1})"));
+  make_dataset(recipe, scratch.path("one"), {}, {.threads = 1});
+  const ThreadLimit eight(8);
+  make_dataset(recipe, scratch.path("set"), {}, {.threads = 8});
+  EXPECT_EQ(members_of(scratch.path("set")), members_of(scratch.path("one")));
 }
 
 TEST(Dataset, ItemsOfAWorldHaveMasksBoxesPosesAndFlow) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/isolated.h>
 #include <petzval/base/scratch_folder.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/dataset/flat_truth.h>
@@ -372,8 +373,11 @@ std::string ItemMaker::key(std::size_t item) {
 PreparedScene ItemMaker::prepared(const RenderRequest& request, const Context& context) {
   const std::lock_guard lock(mutex_);
   const auto before = worlds_.find(request.scene);
-  PreparedScene scene = before == worlds_.end() ? prepare_scene(request, context)
-                                                : prepare_scene(request, before->second, context);
+  PreparedScene scene;
+  run_isolated([&] {
+    scene = before == worlds_.end() ? prepare_scene(request, context)
+                                    : prepare_scene(request, before->second, context);
+  });
   worlds_.insert_or_assign(request.scene, scene);
   return scene;
 }

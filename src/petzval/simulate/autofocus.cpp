@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/best_focus.h>
 #include <petzval/base/error.h>
+#include <petzval/base/isolated.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
 #include <petzval/camera/mounted_lens.h>
@@ -259,9 +260,11 @@ const render::World& world_for_focus(const PreparedScene& scene) {
   if (!scene.request.wavelengths_nm.empty()) return *scene.world->world;
   WorldForFocus& kept = *scene.world->for_focus;
   std::call_once(kept.once, [&] {
-    render::Unsupported unsupported(true);  // what it finds has been reported
-    kept.world =
-        build_world_at(*scene.world->description, scene.request, eight_wavelengths_nm(), unsupported);
+    run_isolated([&] {
+      render::Unsupported unsupported(true);  // what it finds has been reported
+      kept.world =
+          build_world_at(*scene.world->description, scene.request, eight_wavelengths_nm(), unsupported);
+    });
   });
   return *kept.world;
 }
