@@ -59,7 +59,7 @@ double spread_um(const LensDataTable& table) {
 int columns_for(double spread_um, double frame_width_mm, int least, int most) {
   constexpr double pixels = 16, um_per_mm = 1000;  // from the middle of a PSF to its edge
   if (spread_um == 0) return most;
-  return std::clamp(static_cast<int>(pixels * frame_width_mm * um_per_mm / spread_um), least, most);
+  return static_cast<int>(std::clamp<double>(pixels * frame_width_mm * um_per_mm / spread_um, least, most));
 }
 
 /// A table of fewer fields than a single picture takes, and PSFs where a picture of this tolerance needs
