@@ -16,7 +16,7 @@ class EdgeShapes {
   /// of these two, and those of the others from their mean.
   static constexpr int count = kinds + 1;
 
-  /// \param mtf50_cpp  of both. \param normal_rad  direction of the edge's normal: a photosite fills its
+  /// \param mtf50_cpp  of all. \param normal_rad  direction of the edge's normal: a photosite fills its
   /// pixel. \throws InputError where a photosite alone has less contrast; possible() tells.
   EdgeShapes(double mtf50_cpp, double normal_rad);
   static bool possible(double mtf50_cpp, double normal_rad);
