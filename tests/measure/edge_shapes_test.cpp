@@ -4,10 +4,8 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_shapes.h>
-#include <petzval/target/render_target.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -64,34 +62,6 @@ TEST(EdgeShapes, AreThoseOfTheirMtfs) {
         const double wider = 0.5 * (edge_of(gauss(1.01), d) + edge_of(circular(1.01), d)),
                      narrower = 0.5 * (edge_of(gauss(0.99), d) + edge_of(circular(0.99), d));
         EXPECT_NEAR(found[1], (wider - narrower) / 0.02, 2e-4) << angle_deg << ' ' << sigma << ' ' << d;
-      }
-    }
-  }
-}
-
-TEST(EdgeShapes, AreThoseOfAberratedPupilsAndHalos) {
-  TargetOptions options;
-  options.pitch_um = 4.73;
-  for (const double angle_deg : {0.0, 12.0, 45.0}) {
-    const double angle = angle_deg * pi / 180, c = std::cos(angle), s = std::sin(angle);
-    // Those of targets, by other sums.
-    const auto defocused = radial_pupil_otf({{0.5}}, 550, 8),
-               spherical = radial_pupil_otf({{0, 0.5}}, 550, 8);
-    const auto of_pupil = [&](const Otf& otf) {
-      return [&](double f) { return transfer(otf, options, f * c, f * s).real(); };
-    };
-    const auto gauss = [](double f, double sigma) { return std::exp(-2 * std::pow(pi * f * sigma, 2)); };
-    const auto halo = [&](double f) {
-      return (0.75 * gauss(f, 0.7) + 0.25 * gauss(f, 4 * 0.7)) * sinc(f * c) * sinc(f * s);
-    };
-    const std::array<std::function<double(double)>, 3> otfs{of_pupil(*defocused), of_pupil(*spherical), halo};
-    for (std::size_t k = 0; k < otfs.size(); ++k) {
-      double half = 0.001;
-      while (otfs[k](half) > 0.5) half += 1e-5;
-      const EdgeShapes shapes(half, angle);
-      for (const double d : {-7.0, -1.3, -0.2, 0.0, 0.6, 2.0, 11.0}) {
-        const auto found = shapes(d);
-        EXPECT_NEAR(found[0] + found[3 + k], edge_of(otfs[k], d), 4e-5) << angle_deg << ' ' << k << ' ' << d;
       }
     }
   }

@@ -90,7 +90,7 @@ TEST(FindEdges, CornersAddLessThanATenthOfWhatNoiseScatters) {
     const Shot shot = shoot(square_at(7, 60), 240, 8, w020);
     double low = 0.05, high = 0.9;
     while (high - low > 1e-9) (shot.truth(0.5 * (low + high), 7) > 0.5 ? low : high) = 0.5 * (low + high);
-    for (const Row& row : {Row{0.01, 0.0083}, {0.02, 0.015}, {0.05, 0.033}, {0.1, 0.065}}) {
+    for (const Row& row : {Row{0.01, 0.0097}, {0.02, 0.017}, {0.05, 0.035}, {0.1, 0.07}}) {
       Plane noisy = shot.plane;
       std::mt19937 random(5);
       std::normal_distribution<double> normal(0, row.noise);

@@ -15,7 +15,7 @@ namespace petzval {
 class BorderedBand {
  public:
   static constexpr int width = 5;         ///< places beside the diagonal
-  static constexpr int most_border = 14;  ///< unknowns that touch all
+  static constexpr int most_border = 11;  ///< unknowns that touch all
 
   /// Several vectors side by side, for what is done with many of them.
   static constexpr int lanes = 8;

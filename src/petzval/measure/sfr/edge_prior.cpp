@@ -16,15 +16,16 @@ constexpr double b = EdgeSpreadBasis::scale_px;
 constexpr double usual_tail_spread_px = 0.06;
 
 /// Of the shapes' unknowns, over the step. How wide an edge is, is known to 0.2 from its first fit. Of their
-/// difference 0.5 makes a Gaussian and −0.5 a circular pupil; of the others 1 makes each of them.
-constexpr std::array<double, EdgeShapes::count - 1> shape_spreads{0.2, 0.5, 0.5, 0.5, 0.5};
+/// difference 0.5 makes a Gaussian and −0.5 a circular pupil; defocus, spherical aberration and halos take up
+/// to that and a little more.
+constexpr std::array<double, EdgeShapes::count - 1> shape_spreads{0.2, 0.5};
 
 /// Third differences of the coefficients of a sharp edge with knots a quarter of a pixel apart, over the
 /// step.
 constexpr double edge_roughness = 0.1;
-/// The same of what an edge has beside its shapes: a compromise over mixed aberrations, coma, astigmatism,
-/// halos and moved cameras. Less would be a bias that all edges of a photograph share.
-constexpr double departure_roughness = 0.0125;
+/// The same of what an edge has beside its shapes: defocus, spherical aberration and halos leave 0.03 to
+/// 0.08. Less would be a bias that all edges of a photograph share.
+constexpr double departure_roughness = 0.05;
 /// Greatest weight of the roughness far from the edge, over that at the edge.
 constexpr double most_weight = 1e8;
 
@@ -73,7 +74,7 @@ std::vector<EdgePrior::RoughForm> EdgePrior::rough_forms() const {
   if (!options_.shapes) return {};
   constexpr int beyond = 8;  // the ends, where coefficients are not yet right
   const int places = basis_.splines + 2 * beyond;
-  std::array<std::vector<double>, 2 + EdgeShapes::count> values;
+  std::array<std::vector<double>, 3 + EdgeShapes::count - 1> values;
   for (std::vector<double>& each : values) each.resize(static_cast<std::size_t>(places));
   for (int j = 0; j < places; ++j) {
     const double d = (j - 0.5 * (places - 1)) * basis_.knot_px, q = 1 / (d * d + b * b);
@@ -83,12 +84,11 @@ std::vector<EdgePrior::RoughForm> EdgePrior::rough_forms() const {
     if (d < 0) continue;  // all are odd about ½
     const std::array<double, EdgeShapes::count> shape = (*options_.shapes)(d);
     values[0][at] = 0.5 + std::atan(d / b) / pi - shape[0];
-    for (std::size_t k = 1; k < shape.size(); ++k) values[2 + k][at] = -shape[k];
-    for (std::size_t k = 0; k < values.size(); ++k)
-      if (k != 1 && k != 2) values[k][mirrored] = -values[k][at];
+    values[3][at] = -shape[1], values[4][at] = -shape[2];
+    for (const std::size_t k : {0, 3, 4}) values[k][mirrored] = -values[k][at];
   }
-  std::vector<int> unknowns{basis_.step(), basis_.tail1(), basis_.tail3()};
-  for (int k = 0; k < basis_.shapes; ++k) unknowns.push_back(basis_.shape(k));
+  const std::array<int, values.size()> unknowns{basis_.step(), basis_.tail1(), basis_.tail3(),
+                                                basis_.shape(0), basis_.shape(1)};
   std::vector<RoughForm> forms;
   for (std::size_t k = 0; k < values.size(); ++k) {
     std::vector<double> coefficients = in_splines(values[k]);

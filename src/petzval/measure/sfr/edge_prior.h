@@ -29,11 +29,11 @@ struct EdgePriorOptions {
 /// of the profile, whose weight the samples choose.
 ///
 /// The first is weak. It keeps the tail sensible where noise hides it, and says how wide shapes may be and
-/// how much there may be of each.
+/// how far beyond both they may lie.
 ///
 /// The roughness is that of third differences of the splines' coefficients. With shapes it is not the
 /// profile's roughness that costs, but that of its difference from the nearest of them, of any width (to
-/// first order) and between them or a little beyond.
+/// first order) and between both or a little beyond.
 class EdgePrior {
  public:
   /// \param range  of the values of the samples. Options and basis outlive the prior.

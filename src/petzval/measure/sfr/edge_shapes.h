@@ -6,17 +6,14 @@
 
 namespace petzval {
 
-/// Edge-spread functions of equal MTF50, of a photosite that light reaches by several PSFs: a Gaussian, that
-/// of a circular pupil, the same with half a wave of defocus, with half a wave of spherical aberration, and a
-/// Gaussian with a quarter of its light in a halo four times as wide. Real ones lie about and between them.
+/// Two edge-spread functions of equal MTF50, of a photosite that light reaches by a Gaussian and by the PSF
+/// of a circular pupil: real ones lie about and between them.
 class EdgeShapes {
  public:
-  static constexpr int kinds = 5;
-  /// The mean of the first two, what it changes by where both are wider by a share, per share, the difference
-  /// of these two, and those of the others from their mean.
-  static constexpr int count = kinds + 1;
+  /// The mean of both, what it changes by where both are wider by a share, per share, and their difference.
+  static constexpr int count = 3;
 
-  /// \param mtf50_cpp  of all. \param normal_rad  direction of the edge's normal: a photosite fills its
+  /// \param mtf50_cpp  of both. \param normal_rad  direction of the edge's normal: a photosite fills its
   /// pixel. \throws InputError where a photosite alone has less contrast; possible() tells.
   EdgeShapes(double mtf50_cpp, double normal_rad);
   static bool possible(double mtf50_cpp, double normal_rad);
@@ -27,7 +24,7 @@ class EdgeShapes {
  private:
   static constexpr int places = 24;
   std::array<double, places> place_{}, weight_{};  ///< of the photosite along the normal [px]
-  std::array<double, kinds> scale_cpp_{};          ///< frequency of each that ScaledEdge counts as 1
+  double sigma_px_ = 0, cutoff_cpp_ = 0;
 };
 
 }  // namespace petzval
