@@ -42,7 +42,7 @@ using ClipperLib::Paths;
 struct Box {
   std::array<cInt, 2> low{}, high{};  ///< by axis
 
-  explicit Box(const Paths& paths) {
+  explicit Box(std::span<const Path> paths) {
     low.fill(std::numeric_limits<cInt>::max());
     high.fill(std::numeric_limits<cInt>::min());
     for (const Path& path : paths)
@@ -51,7 +51,7 @@ struct Box {
         high = {std::max(high[0], p.X), std::max(high[1], p.Y)};
       }
   }
-  explicit Box(const Path& path) : Box(Paths{path}) {}
+  explicit Box(const Path& path) : Box(std::span(&path, 1)) {}
   bool overlaps(const Box& other) const {
     return low[0] < other.high[0] && other.low[0] < high[0] && low[1] < other.high[1] &&
            other.low[1] < high[1];
