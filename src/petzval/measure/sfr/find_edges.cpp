@@ -147,11 +147,9 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr double tolerance_px = 0.75, least_reach_px = 4;
   const Plane drawn = quiet(plane);
   const double noise = noise_share(plane);
-  constexpr double noisy = 0.02;  // from here on a picture is smoothed several times
-  const double rounding_px = noise < noisy ? 0 : 10;
   std::vector<Outline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
-    std::vector<ContourPoint> corners = straightened(contour, tolerance_px, rounding_px);
+    std::vector<ContourPoint> corners = straightened(contour, tolerance_px);
     if (corners.size() >= 2) outlines.push_back({std::move(corners), contour.closed});
   }
   const SideGrid grid(outlines);

@@ -63,47 +63,46 @@ std::optional<Fitted> line_through(const std::vector<ContourPoint>& points, std:
   return line;
 }
 
-/// Where two lines meet, if they are not nearly parallel.
-std::optional<ContourPoint> meeting_of(const Fitted& a, const Fitted& b) {
-  const double turn = a.ux * b.uy - a.uy * b.ux;
-  if (std::abs(turn) < 0.25) return std::nullopt;
-  const double t = ((b.at.x - a.at.x) * b.uy - (b.at.y - a.at.y) * b.ux) / turn;
-  return ContourPoint{a.at.x + t * a.ux, a.at.y + t * a.uy};
-}
-
-/// The corners of a contour: where the lines through its stretches meet. Blur, and smoothing against noise,
-/// round the contour itself: a short stretch between two straight ones stands for the corner where these
-/// meet, and so do two or three within `rounding_px` of it.
+/// The corners of a contour: where the lines through its stretches meet, since blur has rounded the contour
+/// itself.
 std::vector<ContourPoint> sharpened(const std::vector<ContourPoint>& points,
-                                    const std::vector<std::size_t>& kept, bool closed, double rounding_px) {
-  constexpr std::size_t most_short = 3;
-  constexpr double farthest_px = 40;
+                                    const std::vector<std::size_t>& kept, bool closed) {
   const std::size_t sides = closed ? kept.size() : kept.size() - 1;
   std::vector<std::optional<Fitted>> lines;
   for (std::size_t s = 0; s < sides; ++s)
     lines.push_back(line_through(points, kept[s], s + 1 < kept.size() ? kept[s + 1] : points.size() - 1));
-  std::size_t first = 0;  // a straight side, so that no row of short ones is cut
-  while (closed && first < sides && !lines[first]) ++first;
+  // Blur cuts corners: a short stretch between two straight ones stands for the corner where these meet.
+  const auto meeting_of = [&](std::size_t before, std::size_t after,
+                              const ContourPoint& near) -> std::optional<ContourPoint> {
+    const std::optional<Fitted>&a = lines[before % sides], &b = lines[after % sides];
+    if (!a || !b) return std::nullopt;
+    const double turn = a->ux * b->uy - a->uy * b->ux;
+    if (std::abs(turn) < 0.25) return std::nullopt;
+    const double t = ((b->at.x - a->at.x) * b->uy - (b->at.y - a->at.y) * b->ux) / turn;
+    const ContourPoint meeting{a->at.x + t * a->ux, a->at.y + t * a->uy};
+    constexpr double farthest = 40;  // lines that meet farther away than any blur's rounding make no corner
+    if (std::hypot(meeting.x - near.x, meeting.y - near.y) > farthest) return std::nullopt;
+    return meeting;
+  };
   std::vector<ContourPoint> corners;
-  if (!closed) corners.push_back(points[kept.front()]);
-  for (std::size_t s = 0, next = 1; s < sides; s = next) {
-    const auto corner = [&](std::size_t i) { return points[kept[(first + i) % kept.size()]]; };
-    const auto line = [&](std::size_t i) { return lines[(first + i) % sides]; };
-    next = s + 1;
-    while (next <= s + most_short && !line(next)) ++next;
-    std::optional<ContourPoint> meeting;
-    if (next < sides + (closed ? 1 : 0) && line(s) && line(next)) meeting = meeting_of(*line(s), *line(next));
-    const double farthest = next > s + 2 ? rounding_px : farthest_px;
-    const auto far = [&](const ContourPoint& p) {
-      return std::hypot(meeting->x - p.x, meeting->y - p.y) > farthest;
-    };
-    if (!meeting || far(corner(s + 1)) || far(corner(next))) {
-      meeting = corner(s + 1);
-      next = s + 1;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const ContourPoint corner = points[kept[i]];
+    const bool inner = closed || (i > 0 && i + 1 < kept.size());
+    const std::size_t before = i + sides - 1;  // the side that ends here; side i begins here
+    if (inner && i < sides && !lines[i]) {
+      // This corner and the next are one, if the sides beyond them meet; the next then falls to the branch
+      // below.
+      if (const auto meeting = meeting_of(before, i + 1, corner);
+          meeting && (closed || i + 2 < kept.size())) {
+        corners.push_back(*meeting);
+        continue;
+      }
     }
-    corners.push_back(*meeting);
+    if (inner && !lines[before % sides] && meeting_of(before + sides - 1, i, corner) && (closed || i > 1))
+      continue;
+    const auto meeting = inner ? meeting_of(before, i, corner) : std::nullopt;
+    corners.push_back(meeting.value_or(corner));
   }
-  if (closed) std::rotate(corners.begin(), corners.end() - 1, corners.end());
   return corners;
 }
 
@@ -114,7 +113,7 @@ double turn_between(const OutlineSide& a, const OutlineSide& b) {
 
 }  // namespace
 
-std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance, double rounding_px) {
+std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance) {
   std::vector<ContourPoint> points = contour.points;
   std::vector<std::size_t> kept;
   if (contour.closed) {
@@ -138,7 +137,7 @@ std::vector<ContourPoint> straightened(const LevelContour& contour, double toler
     divide(points, 0, points.size() - 1, tolerance, kept);
   }
   std::sort(kept.begin(), kept.end());
-  return sharpened(points, kept, contour.closed, rounding_px);
+  return sharpened(points, kept, contour.closed);
 }
 
 std::vector<Stretch> stretches_of(const Outline& outline) {

@@ -31,9 +31,7 @@ struct Stretch {
 
 /// The corners of a contour, so that the lines between them stay within the tolerance [pixels] (Ramer 1972;
 /// Douglas & Peucker 1973), and are where lines through the middles of neighbouring sides meet.
-/// \param rounding_px  how far from its corners smoothing may have rounded the contour. Nearer than this,
-/// arcs are taken for corners.
-std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance, double rounding_px);
+std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance);
 
 /// All of an outline's sides. Those that meet at less than 8°, and turn by less than 25° in all, are one
 /// stretch.
