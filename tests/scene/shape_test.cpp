@@ -117,6 +117,60 @@ TEST(Shape, AgreesWithCountingPoints) {
   }
 }
 
+// Against each shape by itself: discs and a triangle that are cut by all borders, or lie outside.
+TEST(ShapesInPicture, AddUpWhatEachShapeCovers) {
+  constexpr std::size_t columns = 40;
+  constexpr int rows = 30;
+  std::vector<Shape> shapes(5);
+  shapes[0].add_disc({3, 4}, 6.3);
+  shapes[1].add_disc({20.2, 15.1}, 9.7);
+  shapes[2].add_polygon(std::array<Point, 3>{{{31, -8}, {52, 12}, {33.3, 37}}});
+  shapes[3].add_disc({-9, 12}, 5);
+  shapes[4].add_rectangle(columns, 2, columns + 7.5, 9);
+  const std::vector<double> values{0.25, 3, 0, 7, 11};
+  std::vector<ShapesInPicture::Valued> valued;
+  for (std::size_t i = 0; i < shapes.size(); ++i) valued.push_back({&shapes[i], values[i]});
+  const ShapesInPicture all(valued, static_cast<int>(columns), rows);
+  std::size_t covered_in_part = 0;
+  for (int row = 0; row < rows; ++row) {
+    std::vector<double> coverage(columns), light(columns), alone(columns);
+    const auto [from, end] = all.coverage(row, coverage, light);
+    const auto reach = all.coverage(row, alone);
+    EXPECT_EQ(reach.from, from);
+    EXPECT_EQ(reach.end, end);
+    std::vector<double> covered(columns), lit(columns);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const std::vector<double> of_shape = row_of(shapes[i], row, columns);
+      for (std::size_t x = 0; x < columns; ++x) {
+        covered[x] += of_shape[x];
+        lit[x] += values[i] * of_shape[x];
+      }
+    }
+    for (std::size_t x = 0; x < columns; ++x) {
+      covered_in_part += static_cast<std::size_t>(covered[x] > 0.01 && covered[x] < 0.99);
+      EXPECT_NEAR(x < from || x >= end ? 0 : coverage[x], covered[x], rounding) << row << " " << x;
+      EXPECT_NEAR(x < from || x >= end ? 0 : alone[x], covered[x], rounding) << row << " " << x;
+      EXPECT_NEAR(x < from || x >= end ? 0 : light[x], lit[x], rounding) << row << " " << x;
+    }
+  }
+  EXPECT_GT(covered_in_part, 100U);
+}
+
+TEST(ShapesInPicture, CountAnOverlapOfAShapeWithItselfOnce) {
+  Shape twice;
+  twice.add_rectangle(1, 0, 6, 1);
+  twice.add_rectangle(4, 0, 9, 1);
+  const ShapesInPicture::Valued one{&twice, 5};
+  std::vector<double> coverage(10), light(10);
+  const auto [from, end] = ShapesInPicture(std::span(&one, 1), 10, 1).coverage(0, coverage, light);
+  EXPECT_EQ(from, 1U);
+  EXPECT_EQ(end, 9U);
+  for (std::size_t x = from; x < end; ++x) {
+    EXPECT_EQ(coverage[x], 1) << x;
+    EXPECT_EQ(light[x], 5) << x;
+  }
+}
+
 TEST(Lettering, StaysInItsBox) {
   Shape shape;
   const char* text = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-/";

@@ -3,7 +3,9 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/drawn_cells.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -69,36 +71,31 @@ class Layout {
 
 std::unique_ptr<DrawnCells> DrawnCells::make(const SceneDrawing& drawing, int band, const SceneLook& look,
                                              const SensorGeometry& grid) {
-  std::vector<std::optional<ShapeInPicture>> laid(drawing.figures.size());
+  std::vector<std::optional<Shape>> laid(drawing.figures.size());
   parallel_for(laid.size(), [&](std::size_t index) {
     Layout layout(look, grid);
     Shape shape;
     for (const Shape::Edge& edge : drawing.figures[index].shape->edges())
       if (!layout.add(edge, shape)) return;
-    laid[index].emplace(shape, grid.columns, grid.rows);
+    laid[index] = std::move(shape);
   });
-  auto cells = std::make_unique<DrawnCells>();
+  std::vector<ShapesInPicture::Valued> figures;
   for (std::size_t index = 0; index < laid.size(); ++index) {
     if (!laid[index]) return nullptr;
-    cells->figures_.push_back(
-        {*std::move(laid[index]), drawing.figures[index].radiance[static_cast<std::size_t>(band)]});
+    figures.push_back(
+        {&*laid[index], double(drawing.figures[index].radiance[static_cast<std::size_t>(band)])});
   }
-  return cells;
+  return std::unique_ptr<DrawnCells>(new DrawnCells(ShapesInPicture(figures, grid.columns, grid.rows),
+                                                    static_cast<std::size_t>(grid.columns)));
 }
 
-void DrawnCells::draw(std::size_t row, std::span<const float> g_source_sr,
-                      std::span<float> irradiance) const {
-  thread_local std::vector<double> coverage;
-  thread_local std::vector<float> ground;
-  coverage.resize(irradiance.size());
-  ground.assign(irradiance.begin(), irradiance.end());
-  for (const Figure& figure : figures_) {
-    const auto [from, end] = figure.shape.coverage(static_cast<int>(row), coverage);
-    for (std::size_t cell = from; cell < end; ++cell) {
-      const double light = double(figure.radiance) * double(g_source_sr[cell]);
-      irradiance[cell] =
-          static_cast<float>(double(irradiance[cell]) + coverage[cell] * (light - double(ground[cell])));
-    }
+void DrawnCells::cover(std::size_t row, Row& cells) const {
+  cells.covered.resize(columns_);
+  cells.radiance.resize(columns_);
+  const auto [from, end] = figures_.coverage(static_cast<int>(row), cells.covered, cells.radiance);
+  for (std::vector<double>* values : {&cells.covered, &cells.radiance}) {
+    std::fill_n(values->begin(), from, 0.0);
+    std::fill(values->begin() + std::ptrdiff_t(end), values->end(), 0.0);
   }
 }
 

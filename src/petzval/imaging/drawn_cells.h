@@ -8,29 +8,32 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
+#include <utility>
 #include <vector>
 
 namespace petzval {
 
 /// The outlines of figures as an image of a grid of cells, at one wavelength: every corner where the lens
 /// puts it, and as many more along an edge as its bend there needs. What a figure covers of a cell is then an
-/// exact area (ShapeInPicture), however fine the cells.
+/// exact area (ShapesInPicture), however fine the cells.
 class DrawnCells {
  public:
   /// Null where the lens does not say where a corner falls. \param drawing  must outlive it.
   static std::unique_ptr<DrawnCells> make(const SceneDrawing& drawing, int band, const SceneLook& look,
                                           const SensorGeometry& grid);
 
-  /// Covers the ground of a row, irradiance, with the figures: radiance × g_source. From any thread.
-  void draw(std::size_t row, std::span<const float> g_source_sr, std::span<float> irradiance) const;
+  /// What the figures cover of the cells of a row, and with what light. From any thread.
+  struct Row {
+    std::vector<double> covered, radiance;
+  };
+  void cover(std::size_t row, Row& cells) const;
 
  private:
-  struct Figure {
-    ShapeInPicture shape;
-    float radiance;
-  };
-  std::vector<Figure> figures_;
+  explicit DrawnCells(ShapesInPicture figures, std::size_t columns)
+      : figures_(std::move(figures)), columns_(columns) {}
+
+  ShapesInPicture figures_;
+  std::size_t columns_;
 };
 
 }  // namespace petzval

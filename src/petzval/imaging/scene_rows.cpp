@@ -120,28 +120,53 @@ double SceneRows::cell(std::span<const float> samples, double x_mm, double y_mm)
   return sum / double(parts.size());
 }
 
+float SceneRows::cell_in_row(std::size_t row, std::size_t column, const RowView& cells,
+                             std::span<const float> samples) const {
+  const float width = cells.width[column], height = cells.height[column];
+  const bool known = !panorama_ && column >= cells.dark && column < cells.width.size() - cells.dark;
+  if (!known || !(std::min(width, height) > 0) || !(std::max(width, height) <= 1))
+    return static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), grid_.y_mm(double(row) + 0.5)));
+  return static_cast<float>(
+      double(cells.g_source_sr[column]) *
+      mean(samples, {scene_.columns() / 2.0 + cells.right[column], scene_.rows() / 2.0 + cells.down[column],
+                     double(width), double(height)}));
+}
+
 void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
-                              float* irradiance) const {
-  const auto columns = static_cast<std::size_t>(grid_.columns);
-  const double y_mm = grid_.y_mm(double(row) + 0.5);
+                              std::size_t from, std::size_t to, float* irradiance) const {
+  if (const std::optional<float> value = flat_value(cells, samples, from, to)) {
+    for (std::size_t column = from; column < to; ++column)
+      irradiance[column] = *value * cells.g_source_sr[column];
+    return;
+  }
   // From a cell's middle to the farthest sample that it needs, and one more for rounding.
   const PlaneView view{samples.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
   const std::size_t at_once = sampled_at_once();
-  constexpr std::size_t stretch = 64;
-  for (std::size_t from = 0; from < columns; from += stretch) {
-    const std::size_t to = std::min(columns, from + stretch);
-    if (const std::optional<float> value = flat_value(cells, samples, from, to)) {
-      for (std::size_t column = from; column < to; ++column)
-        irradiance[column] = *value * cells.g_source_sr[column];
-      continue;
-    }
-    for (std::size_t column = from; column < to;) {
-      if (!panorama_) column = sample_row(view, cells, 1, column, to, irradiance);
-      const std::size_t end = panorama_ ? to : std::min(to, column + at_once);
-      for (; column < end; ++column)
-        irradiance[column] = static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), y_mm));
-    }
+  for (std::size_t column = from; column < to;) {
+    if (!panorama_) column = sample_row(view, cells, 1, column, to, irradiance);
+    const std::size_t end = panorama_ ? to : std::min(to, column + at_once);
+    for (; column < end; ++column) irradiance[column] = cell_in_row(row, column, cells, samples);
   }
+}
+
+void SceneRows::write_drawing(std::size_t row, const RowView& cells, const DrawnCells::Row& drawn,
+                              std::size_t from, std::size_t to, float* irradiance) const {
+  const SceneDrawing& drawing = *scene_.drawing();
+  const auto ground = double(drawing.ground[band_]);
+  const auto is_bare = [](double covered) { return covered < 1; };
+  if (drawing.texture && std::any_of(&drawn.covered[from], &drawn.covered[to - 1] + 1, is_bare)) {
+    write_samples(row, cells, *drawing.texture, from, to, irradiance);
+  } else {
+    std::copy_n(&cells.g_source_sr[from], to - from, irradiance + from);
+  }
+  for (std::size_t column = from; column < to; ++column)
+    irradiance[column] =
+        static_cast<float>((1 - drawn.covered[column]) * ground * double(irradiance[column]) +
+                           drawn.radiance[column] * double(cells.g_source_sr[column]));
+  if (are_inside(cells, from, to)) return;
+  for (std::size_t column = from; column < to; ++column)
+    if (!are_inside(cells, column, column + 1))
+      irradiance[column] = cell_in_row(row, column, cells, radiance_);
 }
 
 std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const float> samples,
@@ -167,13 +192,17 @@ std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const
                          centre + bottom + around, surround_ != Surround::zero);
 }
 
-bool SceneRows::is_inside(const RowView& cells, std::size_t column) const {
-  if (column < cells.dark || column >= cells.g_source_sr.size() - cells.dark) return false;
-  const auto fits = [](double from_middle, float side, int size) {
-    return std::abs(from_middle) + double(side) / 2 < size / 2.0;
+bool SceneRows::are_inside(const RowView& cells, std::size_t from, std::size_t to) const {
+  if (from < cells.dark || to > cells.g_source_sr.size() - cells.dark) return false;
+  const double half_columns = scene_.columns() / 2.0, half_rows = scene_.rows() / 2.0;
+  const auto outside = [from, to](const std::vector<double>& from_middle, const std::vector<float>& sides,
+                                  double half) {
+    std::size_t count = 0;
+    for (std::size_t column = from; column < to; ++column)
+      count += std::abs(from_middle[column]) + double(sides[column]) / 2 < half ? 0 : 1;
+    return count;
   };
-  return fits(cells.right[column], cells.width[column], scene_.columns()) &&
-         fits(cells.down[column], cells.height[column], scene_.rows());
+  return outside(cells.right, cells.width, half_columns) + outside(cells.down, cells.height, half_rows) == 0;
 }
 
 void SceneRows::look(std::size_t row, RowView& straight) const {
@@ -189,20 +218,16 @@ void SceneRows::write(std::size_t row, const RowView& straight, float* irradianc
   const bool turns = !panorama_ && !aimed_.is_straight();
   if (turns) aimed_.turn(straight, turned_view);
   const RowView& cells = turns ? turned_view : straight;
-  if (!drawn_) return write_samples(row, cells, radiance_, irradiance);
-  const SceneDrawing& drawing = *scene_.drawing();
-  const float ground = drawing.ground[band_];
-  if (drawing.texture) {
-    write_samples(row, cells, *drawing.texture, irradiance);
-  } else {
-    std::copy_n(cells.g_source_sr.begin(), columns, irradiance);
+  thread_local DrawnCells::Row drawn;
+  if (drawn_) drawn_->cover(row, drawn);
+  constexpr std::size_t stretch = 64;
+  for (std::size_t from = 0; from < columns; from += stretch) {
+    const std::size_t to = std::min(columns, from + stretch);
+    if (drawn_)
+      write_drawing(row, cells, drawn, from, to, irradiance);
+    else
+      write_samples(row, cells, radiance_, from, to, irradiance);
   }
-  for (std::size_t column = 0; column < columns; ++column) irradiance[column] *= ground;
-  drawn_->draw(row, cells.g_source_sr, {irradiance, columns});
-  for (std::size_t column = 0; column < columns; ++column)
-    if (!is_inside(cells, column))
-      irradiance[column] = static_cast<float>(
-          cell(radiance_, grid_.x_mm(double(column) + 0.5), grid_.y_mm(double(row) + 0.5)));
 }
 
 CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,

@@ -4,6 +4,7 @@
 
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/drawn_cells.h>
 #include <petzval/imaging/flat_blocks.h>
 #include <petzval/imaging/scene_aim.h>
 
@@ -14,7 +15,6 @@
 
 namespace petzval {
 
-class DrawnCells;
 class PanoramaBand;
 
 /// Irradiance before blur, radiance × g_source, on the rows of a grid: the mean of each cell over what it
@@ -60,13 +60,19 @@ class SceneRows {
   double mean(std::span<const float> samples, const Rectangle& seen) const;
   /// Mean of samples × g_source over a cell.
   double cell(std::span<const float> samples, double x_mm, double y_mm) const;
-  void write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
-                     float* irradiance) const;
+  /// The same of one whose place in a row is known.
+  float cell_in_row(std::size_t row, std::size_t column, const RowView& cells,
+                    std::span<const float> samples) const;
+  /// The cells [from, to) of a row.
+  void write_samples(std::size_t row, const RowView& cells, std::span<const float> samples, std::size_t from,
+                     std::size_t to, float* irradiance) const;
+  void write_drawing(std::size_t row, const RowView& cells, const DrawnCells::Row& drawn, std::size_t from,
+                     std::size_t to, float* irradiance) const;
   /// The radiance that the cells [from, to) of a row see, if all of them see the same.
   std::optional<float> flat_value(const RowView& cells, std::span<const float> samples, std::size_t from,
                                   std::size_t to) const;
-  /// Whether a cell of a row sees the inside of the scene.
-  bool is_inside(const RowView& cells, std::size_t column) const;
+  /// Whether the cells [from, to) of a row see the inside of the scene.
+  bool are_inside(const RowView& cells, std::size_t from, std::size_t to) const;
 
   const Scene& scene_;
   std::size_t band_;

@@ -112,7 +112,8 @@ void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
 
 void ChartCanvas::mix(const Shape& shape, const Paint& paint) {
   const std::size_t width = static_cast<std::size_t>(columns());
-  const ShapeInPicture in_picture(shape, columns(), rows());
+  const ShapesInPicture::Valued one{&shape};
+  const ShapesInPicture in_picture(std::span(&one, 1), columns(), rows());
   parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t row) {
     thread_local std::vector<double> coverage;
     coverage.resize(width);

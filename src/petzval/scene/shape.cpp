@@ -15,6 +15,9 @@ namespace {
 /// Coverage below this is rounding of the sums, not light.
 constexpr double rounding = 1e-12;
 
+/// Pixels right of its last that an edge on its border adds to.
+constexpr std::size_t beyond = 2;
+
 double twice_signed_area(std::span<const Point> corners) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -30,9 +33,11 @@ double x_at(Point a, Point b, double y) {
 
 /// Adds what lies to the right of a piece of an edge within one row, as differences from pixel to pixel. The
 /// piece spans `height` of the row (signed) and goes from x = from to x = to, both within the row's pixels.
-void add_piece(std::span<double> differences, double from, double to, double height) {
+/// \param last  pixel, a place for what lies right of the picture. \param add  takes a pixel and a
+/// difference.
+template <typename Add>
+void add_piece(std::size_t last, double from, double to, double height, const Add& add) {
   if (from > to) std::swap(from, to);
-  const std::size_t last = differences.size() - 1;  // a place for what lies right of the picture
   const std::size_t first_pixel = std::min(static_cast<std::size_t>(from), last);
   double covered_before = 0;  // running sum that belongs in the pixels up to here
   for (std::size_t pixel = first_pixel; pixel <= last; ++pixel) {
@@ -42,10 +47,10 @@ void add_piece(std::span<double> differences, double from, double to, double hei
     const double part = to > from ? (end - begin) / (to - from) : 1.0;
     const double passed = to > from ? (begin - from) / (to - from) : 0.0;
     const double area = height * (passed + part * (right - (begin + end) / 2));
-    differences[pixel] += area - covered_before;
+    add(pixel, area - covered_before);
     covered_before = area;
     if (to <= right) {
-      if (pixel < last) differences[pixel + 1] += height - area;
+      if (pixel < last) add(pixel + 1, height - area);
       return;
     }
   }
@@ -86,7 +91,9 @@ void Shape::add_square(Point centre, double side, double angle_rad) {
 namespace {
 
 /// Adds the part of an edge within a row; going up it opens the shape, going down it closes it.
-void add_edge_in_row(const Shape::Edge& edge, int row, double width, std::span<double> differences) {
+template <typename Add>
+void add_edge_in_row(const Shape::Edge& edge, int row, std::size_t columns, const Add& add) {
+  const auto width = double(columns);
   const double low = std::max<double>(row, std::min(edge.from.y, edge.to.y));
   const double high = std::min<double>(row + 1.0, std::max(edge.from.y, edge.to.y));
   if (!(low < high)) return;
@@ -106,7 +113,7 @@ void add_edge_in_row(const Shape::Edge& edge, int row, double width, std::span<d
     if (!(cuts[i] < cuts[i + 1])) continue;
     const double from = std::clamp(x_at(edge.from, edge.to, cuts[i]), 0.0, width);
     const double to = std::clamp(x_at(edge.from, edge.to, cuts[i + 1]), 0.0, width);
-    add_piece(differences, from, to, sign * (cuts[i + 1] - cuts[i]));
+    add_piece(columns, from, to, sign * (cuts[i + 1] - cuts[i]), add);
   }
 }
 
@@ -131,53 +138,81 @@ void Shape::add_edge(Edge edge) {
 
 void Shape::coverage(int row, std::span<double> pixels) const {
   std::vector<double> differences(pixels.size() + 1, 0.0);
-  for (const Edge& edge : edges_) add_edge_in_row(edge, row, double(pixels.size()), differences);
+  for (const Edge& edge : edges_)
+    add_edge_in_row(edge, row, pixels.size(),
+                    [&](std::size_t pixel, double by) { differences[pixel] += by; });
   add_up(differences, pixels);
 }
 
-ShapeInPicture::ShapeInPicture(const Shape& shape, int columns, int rows)
+ShapesInPicture::ShapesInPicture(std::span<const Valued> shapes, int columns, int rows)
     : columns_(static_cast<std::size_t>(columns)), first_(static_cast<std::size_t>(rows) + 1) {
-  const auto rows_of = [&](const Shape::Edge& edge) {
-    const auto row = [&](double y) { return static_cast<std::size_t>(std::clamp(y, 0.0, double(rows))); };
-    return std::array<std::size_t, 2>{row(std::floor(std::min(edge.from.y, edge.to.y))),
-                                      row(std::ceil(std::max(edge.from.y, edge.to.y)))};
+  const auto for_rows = [&](const auto& take) {
+    for (const auto& [shape, value] : shapes)
+      for (const Shape::Edge& edge : shape->edges()) {
+        const auto row = [&](double y) { return static_cast<std::size_t>(std::clamp(y, 0.0, double(rows))); };
+        const auto [top, bottom] = std::minmax(edge.from.y, edge.to.y);
+        const std::size_t end = row(std::ceil(bottom));
+        for (std::size_t at = row(std::floor(top)); at < end; ++at) take(at, Edge{edge, value});
+      }
   };
-  for (const Shape::Edge& edge : shape.edges()) {
-    const auto [from, end] = rows_of(edge);
-    for (std::size_t row = from; row < end; ++row) ++first_[row + 1];
-  }
+  for_rows([&](std::size_t row, const Edge&) { ++first_[row + 1]; });
   for (std::size_t row = 0; row + 1 < first_.size(); ++row) first_[row + 1] += first_[row];
   edges_.resize(first_.back());
   std::vector<std::size_t> next = first_;
-  for (const Shape::Edge& edge : shape.edges()) {
-    const auto [from, end] = rows_of(edge);
-    for (std::size_t row = from; row < end; ++row) edges_[next[row]++] = edge;
-  }
+  for_rows([&](std::size_t row, const Edge& edge) { edges_[next[row]++] = edge; });
 }
 
-std::span<const Shape::Edge> ShapeInPicture::edges_of(int row) const {
+std::span<const ShapesInPicture::Edge> ShapesInPicture::edges_of(int row) const {
   const auto at = static_cast<std::size_t>(row);
   return std::span(edges_).subspan(first_[at], first_[at + 1] - first_[at]);
 }
 
-ShapeInPicture::Reach ShapeInPicture::coverage(int row, std::span<double> pixels) const {
-  const std::span<const Shape::Edge> edges = edges_of(row);
-  if (edges.empty()) return {};
+ShapesInPicture::Reach ShapesInPicture::reach_of(std::span<const Edge> edges) const {
   double left = double(columns_), right = 0;
-  for (const Shape::Edge& edge : edges) {
+  for (const auto& [edge, value] : edges) {
     left = std::min({left, edge.from.x, edge.to.x});
     right = std::max({right, edge.from.x, edge.to.x});
   }
   const auto pixel = [&](double x) { return static_cast<std::size_t>(std::clamp(x, 0.0, double(columns_))); };
   const Reach reach{pixel(std::floor(left)), pixel(std::ceil(right))};
-  if (reach.from >= reach.end) return {};
+  return reach.from < reach.end ? reach : Reach{};
+}
+
+ShapesInPicture::Reach ShapesInPicture::coverage(int row, std::span<double> pixels) const {
+  const std::span<const Edge> edges = edges_of(row);
+  const Reach reach = reach_of(edges);
+  if (reach.from == reach.end) return reach;
   thread_local std::vector<double> differences;
-  differences.resize(std::max(differences.size(), columns_ + 1));
-  std::fill(differences.begin() + std::ptrdiff_t(reach.from),
-            differences.begin() + std::ptrdiff_t(reach.end) + 1, 0.0);
-  const std::span<double> of_row(differences.data(), columns_ + 1);
-  for (const Shape::Edge& edge : edges) add_edge_in_row(edge, row, double(columns_), of_row);
-  add_up(of_row.subspan(reach.from), pixels.subspan(reach.from, reach.end - reach.from));
+  differences.assign(reach.end - reach.from + beyond, 0.0);
+  for (const auto& [edge, value] : edges)
+    add_edge_in_row(edge, row, columns_,
+                    [&](std::size_t pixel, double by) { differences[pixel - reach.from] += by; });
+  add_up(differences, pixels.subspan(reach.from, reach.end - reach.from));
+  return reach;
+}
+
+ShapesInPicture::Reach ShapesInPicture::coverage(int row, std::span<double> pixels,
+                                                 std::span<double> values) const {
+  const std::span<const Edge> edges = edges_of(row);
+  const Reach reach = reach_of(edges);
+  if (reach.from == reach.end) return reach;
+  struct Sums {
+    double coverage = 0, value = 0;
+  };
+  thread_local std::vector<Sums> differences;
+  differences.assign(reach.end - reach.from + beyond, {});
+  for (const auto& [edge, of_edge] : edges)
+    add_edge_in_row(edge, row, columns_, [&, value = of_edge](std::size_t pixel, double by) {
+      differences[pixel - reach.from].coverage += by;
+      differences[pixel - reach.from].value += value * by;
+    });
+  Sums sums;
+  for (std::size_t pixel = reach.from; pixel < reach.end; ++pixel) {
+    sums.coverage += differences[pixel - reach.from].coverage;
+    sums.value += differences[pixel - reach.from].value;
+    pixels[pixel] = sums.coverage < rounding ? 0 : std::min(sums.coverage, 1.0);
+    values[pixel] = sums.coverage < rounding ? 0 : sums.value / std::max(sums.coverage, 1.0);
+  }
   return reach;
 }
 

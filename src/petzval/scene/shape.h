@@ -53,25 +53,38 @@ class Shape {
   double top_ = 1e300, bottom_ = -1e300;
 };
 
-/// A shape over a picture, its edges sorted by rows: coverage of shapes of many edges, where it is not 0.
-class ShapeInPicture {
+/// Shapes over a picture, each of a value, their edges sorted by rows: for shapes of many edges, and many
+/// shapes.
+class ShapesInPicture {
  public:
-  ShapeInPicture(const Shape& shape, int columns, int rows);
+  struct Valued {
+    const Shape* shape;
+    double value = 1;
+  };
+  /// \param shapes  looked at here only.
+  ShapesInPicture(std::span<const Valued> shapes, int columns, int rows);
 
   /// Pixels [from, end) of a row.
   struct Reach {
     std::size_t from = 0, end = 0;
   };
-  /// As Shape::coverage(). \param pixels  of the whole row; only those within what is returned are set, all
-  /// others lie outside the shape.
+  /// As Shape::coverage(), of all shapes together. \param pixels  of the whole row; only those within what is
+  /// returned are set, all others lie outside the shapes.
   Reach coverage(int row, std::span<double> pixels) const;
+  /// The same, and the sum of value × coverage. \param values  as `pixels`.
+  Reach coverage(int row, std::span<double> pixels, std::span<double> values) const;
 
  private:
-  std::span<const Shape::Edge> edges_of(int row) const;
+  struct Edge {
+    Shape::Edge edge;
+    double value;
+  };
+  std::span<const Edge> edges_of(int row) const;
+  Reach reach_of(std::span<const Edge> edges) const;
 
   std::size_t columns_;
   std::vector<std::size_t> first_;  ///< of each row in `edges_`, and the end
-  std::vector<Shape::Edge> edges_;  ///< of row after row
+  std::vector<Edge> edges_;         ///< of row after row
 };
 
 }  // namespace petzval
