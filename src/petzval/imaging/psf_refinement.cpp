@@ -66,12 +66,13 @@ std::vector<float> squares_share(int count, int side) {
 /// Where rays do not come near, samples are zero, and stay so, but for one sample about those that are lit.
 /// The light stays what it was.
 void keep_dark(const Psf& psf, int factor, Psf& fine) {
-  const auto first_and_last = [&](int row) {
+  std::vector<std::pair<int, int>> lit;  // of each row, the first and the last sample
+  for (int row = 0; row < psf.size; ++row) {
     int first = 0, last = psf.size - 1;
     while (first <= last && psf.at(row, first) == 0) ++first;
     while (last >= first && psf.at(row, last) == 0) --last;
-    return first <= last ? std::pair(first, last) : std::pair(psf.size, -1);
-  };
+    lit.push_back(first <= last ? std::pair(first, last) : std::pair(psf.size, -1));
+  }
   const int middle = psf.size / 2, reach = fine.size / 2;
   const double before = std::accumulate(fine.values.begin(), fine.values.end(), 0.0);
   for (int i = 0; i < fine.size; ++i) {
@@ -79,14 +80,14 @@ void keep_dark(const Psf& psf, int factor, Psf& fine) {
     const double row = middle + double(i - reach) / factor;
     for (int near = std::max(0, static_cast<int>(std::ceil(row)) - 1);
          near <= std::min(psf.size - 1, static_cast<int>(std::floor(row)) + 1); ++near) {
-      const auto [from, to] = first_and_last(near);
+      const auto& [from, to] = lit[static_cast<std::size_t>(near)];
       first = std::min(first, from);
       last = std::max(last, to);
     }
     float* values = fine.values.data() + static_cast<std::ptrdiff_t>(i) * fine.size;
     const int from = reach + (first - 1 - middle) * factor, to = reach + (last + 1 - middle) * factor;
-    for (int j = 0; j < fine.size; ++j)
-      if (j < from || j > to) values[j] = 0;
+    std::fill(values, values + std::clamp(from, 0, fine.size), 0.0F);
+    std::fill(values + std::clamp(to + 1, 0, fine.size), values + fine.size, 0.0F);
   }
   const double after = std::accumulate(fine.values.begin(), fine.values.end(), 0.0);
   for (float& value : fine.values) value = static_cast<float>(value * (before / after));
@@ -122,11 +123,11 @@ Psf refined_psf(const Psf& psf, double widest_um) {
   const int reach = factor * (psf.size / 2);
   fine.size = 2 * reach + 1;
   fine.values.reserve(static_cast<std::size_t>(fine.size) * static_cast<std::size_t>(fine.size));
-  for (int i = -reach; i <= reach; ++i)
-    for (int j = -reach; j <= reach; ++j)
-      fine.values.push_back(
-          image[static_cast<std::size_t>((i + side) % side) * static_cast<std::size_t>(side) +
-                static_cast<std::size_t>((j + side) % side)]);
+  for (int i = -reach; i <= reach; ++i) {
+    const float* const row = image.data() + static_cast<std::ptrdiff_t>((i + side) % side) * side;
+    fine.values.insert(fine.values.end(), row + side - reach, row + side);
+    fine.values.insert(fine.values.end(), row, row + reach + 1);
+  }
   keep_dark(psf, factor, fine);
   return fine;
 }
