@@ -307,5 +307,41 @@ TEST(TableByHeight, ChosenFieldsSayWhatADenseTableDoes) {
   }
 }
 
+// The image turns back inwards a little beyond the frame. Fields lie as close within it as where it does not.
+TEST(TableByHeight, ChoosesFieldsUpToWhereTheImageTurnsBack) {
+  MountedLens camera(read_lens("edmund-54852").lens);
+  camera.focus_at_m({});
+  const SensorGeometry sensor{160, 120, 30};
+  TableOptions options;
+  options.wavelengths_nm = {550};
+  options.max_image_height_mm = 3.39;
+  options.half_frame_mm = {sensor.width_mm() / 2 + 0.24, sensor.height_mm() / 2 + 0.24};
+  TableOptions within = options;
+  within.max_image_height_mm = 3.1;
+  within.field_count = 241;
+  ImagingOptions imaging;
+  imaging.surround = Surround::extend;
+  imaging.supersample = 2;
+  const Scene scene = checkerboard(48);
+  const SpectralImage truth =
+      form_image(scene, build_lens_data_table(camera.lens(), within), sensor, imaging);
+  const LensDataTable chosen = build_image_table(
+      camera.lens(), options,
+      {sensor.pitch_um / 2, imaging.product.tolerance, imaging.tail_pixels * sensor.pitch_um});
+  const SpectralImage picture = form_image(scene, chosen, sensor, imaging);
+  double off = 0, all = 0;
+  for (int row = 0; row < sensor.rows; ++row)
+    for (int column = 0; column < sensor.columns; ++column) {
+      const double height_mm = std::hypot(sensor.x_mm(column + 0.5), sensor.y_mm(row + 0.5));
+      if (height_mm > 2.5) continue;  // light from beyond the smaller table comes no farther
+      const auto at = static_cast<std::size_t>(row * sensor.columns + column);
+      off += std::pow(double(picture.band(0)[at]) - double(truth.band(0)[at]), 2);
+      all += std::pow(double(truth.band(0)[at]), 2);
+    }
+  EXPECT_LT(std::sqrt(off / all), imaging.product.tolerance);
+  EXPECT_GT(chosen.interpolation_error, 0);
+  EXPECT_LT(chosen.interpolation_error, imaging.product.tolerance);
+}
+
 }  // namespace
 }  // namespace petzval

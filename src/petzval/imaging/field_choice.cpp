@@ -21,7 +21,6 @@ constexpr std::size_t first_intervals = (fewest_to_choose - 1) / 2;
 /// An interval between two fields with PSFs.
 struct Interval {
   std::size_t from, to;
-  std::size_t middle() const { return (from + to) / 2; }
 };
 
 std::array<double, 2> half_frame_of(const TableOptions& options) {
@@ -32,11 +31,17 @@ std::array<double, 2> half_frame_of(const TableOptions& options) {
 /// Finds the fields that an image needs.
 class FieldChoice {
  public:
-  FieldChoice(HeightTable& parts, const TableOptions& options, const SpreadWanted& wanted,
+  FieldChoice(HeightTable& parts, const TableOptions& options, std::size_t finer, const SpreadWanted& wanted,
               const ProgressCallback& progress)
-      : parts_(parts), frame_(half_frame_of(options)), wanted_(wanted), progress_(progress) {
+      : parts_(parts),
+        frame_(half_frame_of(options)),
+        finer_(finer),
+        last_rising_(parts.last_rising_field()),
+        wanted_(wanted),
+        progress_(progress) {
     const std::size_t last = parts.table().fields.size() - 1;
-    for (std::size_t i = 0; i <= first_intervals; ++i) taken_.push_back(i * last / first_intervals);
+    for (std::size_t i = 0; i <= first_intervals; ++i)
+      taken_.push_back(i == first_intervals ? last : field_at(i * last / first_intervals));
   }
 
   /// Takes what a wavelength needs beyond what others took.
@@ -47,7 +52,7 @@ class FieldChoice {
     std::vector<Interval> open;
     for (std::size_t i = 0; i + 1 < taken_.size(); ++i) open.push_back({taken_[i], taken_[i + 1]});
     while (true) {
-      std::erase_if(open, [](const Interval& interval) { return interval.to - interval.from < 2; });
+      std::erase_if(open, [&](const Interval& interval) { return !can_be_parted(interval); });
       if (open.empty()) break;
       open = refined(open);
     }
@@ -56,6 +61,20 @@ class FieldChoice {
   ChosenFields chosen() && { return {std::move(taken_), error_}; }
 
  private:
+  /// A field, or the one before it that was asked for.
+  std::size_t field_at(std::size_t field) const {
+    return field <= last_rising_ ? field : field - field % finer_;
+  }
+  /// Where an interval is parted, if it can be.
+  std::size_t middle_of(const Interval& interval) const {
+    return field_at((interval.from + interval.to) / 2);
+  }
+  bool can_be_parted(const Interval& interval) const { return middle_of(interval) > interval.from; }
+  /// Of the frame.
+  double share_of(const Interval& interval) const {
+    return std::max(0.0, frame_.share(height_mm(interval.from), height_mm(interval.to)));
+  }
+
   /// What the PSFs about an interval miss in its middle.
   struct Misfit {
     double of_allowed;  ///< over what they may
@@ -65,7 +84,7 @@ class FieldChoice {
   /// The halves of those that are too wide.
   std::vector<Interval> refined(const std::vector<Interval>& open) {
     std::vector<std::size_t> middles;
-    for (const Interval& interval : open) middles.push_back(interval.middle());
+    for (const Interval& interval : open) middles.push_back(middle_of(interval));
     parts_.add_psfs(middles, std::array{wavelength_}, progress_);
     std::vector<Misfit> misfits(open.size());
     parallel_for(open.size(), [&](std::size_t i) { misfits[i] = misfit(open[i]); });
@@ -73,19 +92,20 @@ class FieldChoice {
     for (std::size_t i = 0; i < open.size(); ++i) {
       const Interval& interval = open[i];
       constexpr double of_halves = 4;  // Halves of an interval miss a quarter of it or less.
-      const double share = frame_.share(height_mm(interval.from), height_mm(interval.to));
+      const std::size_t middle = middle_of(interval);
       const double error = over_interval * misfits[i].error;
       if (misfits[i].of_allowed <= 1) {
-        squares_ += share * error * error;
-        parts_.remove_psf(interval.middle(), wavelength_);
+        squares_ += share_of(interval) * error * error;
+        parts_.remove_psf(middle, wavelength_);
         continue;
       }
-      taken_.push_back(interval.middle());
-      const bool last = misfits[i].of_allowed <= of_halves || interval.to - interval.from < 4;
-      if (last) squares_ += share * std::pow(error / of_halves, 2);
-      if (misfits[i].of_allowed <= of_halves) continue;
-      halves.push_back({interval.from, interval.middle()});
-      halves.push_back({interval.middle(), interval.to});
+      taken_.push_back(middle);
+      for (const Interval& half : {Interval{interval.from, middle}, Interval{middle, interval.to}}) {
+        if (misfits[i].of_allowed > of_halves && can_be_parted(half))
+          halves.push_back(half);
+        else
+          squares_ += share_of(half) * std::pow(error / of_halves, 2);
+      }
     }
     std::sort(taken_.begin(), taken_.end());
     return halves;
@@ -106,7 +126,7 @@ class FieldChoice {
     const double evenly = 1 / std::sqrt((first_intervals + 1) * frame_.share(from_mm, to_mm));
     const double allowed = of_tolerance * wanted_.tolerance * std::clamp(evenly, 1.0, most_at_rim);
     const double moved_allowed = wanted_.of_a_preview() ? of_centre * wanted_.tolerance : allowed;
-    const FieldMisfit found = field_misfit(table, wavelength_, about(interval), interval.middle(), wanted_);
+    const FieldMisfit found = field_misfit(table, wavelength_, about(interval), middle_of(interval), wanted_);
     Misfit worst{0, found.error()};
     // A bump of the centre's height in an interval moves light together by four times its slope.
     for (const FieldMisfit::Part& part : found.parts)
@@ -117,6 +137,7 @@ class FieldChoice {
 
   HeightTable& parts_;
   const FrameRings frame_;
+  const std::size_t finer_, last_rising_;
   const SpreadWanted wanted_;
   const ProgressCallback& progress_;
   std::size_t wavelength_ = 0;
@@ -126,9 +147,9 @@ class FieldChoice {
 
 }  // namespace
 
-ChosenFields choose_fields(HeightTable& parts, const TableOptions& options, const SpreadWanted& wanted,
-                           const ProgressCallback& progress) {
-  FieldChoice choice(parts, options, wanted, progress);
+ChosenFields choose_fields(HeightTable& parts, const TableOptions& options, std::size_t finer,
+                           const SpreadWanted& wanted, const ProgressCallback& progress) {
+  FieldChoice choice(parts, options, finer, wanted, progress);
   const std::size_t last = parts.table().wavelengths_nm.size() - 1;
   choice.look_at((last + 1) / 2);
   if (!wanted.of_a_preview() && last > 1)

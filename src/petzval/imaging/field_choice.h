@@ -17,9 +17,10 @@ struct ChosenFields {
 };
 
 /// Adds PSFs to `parts` at the wavelengths by which it chooses; of those, only PSFs of chosen fields stay.
-/// \param options  of `parts`.
-ChosenFields choose_fields(HeightTable& parts, const TableOptions& options, const SpreadWanted& wanted,
-                           const ProgressCallback& progress);
+/// \param options  of `parts`. \param finer  every so many fields there is one that was asked for; where the
+/// image turns back inwards, there is no choice of others.
+ChosenFields choose_fields(HeightTable& parts, const TableOptions& options, std::size_t finer,
+                           const SpreadWanted& wanted, const ProgressCallback& progress);
 
 /// The fewest fields among which there is a choice.
 inline constexpr int fewest_to_choose = 7;

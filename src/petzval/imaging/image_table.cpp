@@ -72,18 +72,12 @@ LensDataTable table_by_height(const Lens& lens, const TableOptions& asked, const
     options.coarse = {wanted.cell_um, wanted.tolerance};
   if (options.field_count < fewest_to_choose) return build_lens_data_table(lens, options, progress);
   constexpr int most_fields = 1000;  // TableOptions::validate()
-  int finer =
+  const int finer =
       wanted.of_a_preview() ? 1 : std::clamp((most_fields - 1) / (asked.field_count - 1), 1, finer_fields);
   options.field_count = finer * (asked.field_count - 1) + 1;
-  std::optional<HeightTable> table_of_fields(std::in_place, lens, options);
-  if (finer > 1 && table_of_fields->hardly_rises()) {
-    finer = 1;
-    options.field_count = asked.field_count;
-    table_of_fields.emplace(lens, options);
-  }
-  HeightTable& parts = *table_of_fields;
+  HeightTable parts(lens, options);
   TableProgress both(progress, parts.table().psf.size() / std::size_t(finer));
-  const ChosenFields chosen = choose_fields(parts, options, wanted, both.first());
+  const ChosenFields chosen = choose_fields(parts, options, std::size_t(finer), wanted, both.first());
   std::vector<std::size_t> kept = chosen.fields;
   for (std::size_t field = 0; field < parts.table().fields.size(); field += std::size_t(finer))
     kept.push_back(field);

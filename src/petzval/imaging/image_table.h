@@ -13,12 +13,12 @@ namespace petzval {
 /// four times as much), or a wall would, it is taken too, and the halves are looked at if it was more than
 /// four times what it may be. Light that is formed apart (SpreadWanted::tail_um) is compared apart.
 ///
-/// PSFs lie at fields that options.field_count asks for, or up to eight times closer, unless the image turns
-/// back inwards (HeightTable::hardly_rises()). The middle
-/// wavelength chooses, then the first and the last. Previews, from a tolerance of 3·10⁻³ on, go by the middle
-/// wavelength and the fields asked for, and a wall may differ by a tenth of the tolerance; from 10⁻² on light
-/// is sampled as coarsely as the cells allow (CoarseLight), and by rays where waves carry too little of it
-/// beyond them. Chief rays and illumination are those of all fields asked for and of all with a PSF.
+/// PSFs lie at fields that options.field_count asks for, or up to eight times closer as long as the image
+/// does not turn back inwards (HeightTable::last_rising_field()). The middle wavelength chooses, then the
+/// first and the last. Previews, from a tolerance of 3·10⁻³ on, go by the middle wavelength and the fields
+/// asked for, and a wall may differ by a tenth of the tolerance; from 10⁻² on light is sampled as coarsely as
+/// the cells allow (CoarseLight), and by rays where waves carry too little of it beyond them. Chief rays and
+/// illumination are those of all fields asked for and of all with a PSF.
 ///
 /// Places over the frame have PSFs on every fourth row and column of their lattice, more towards its rim
 /// where they are needed, on every second or on all, at any tolerance: the fewest that tell the kernels in

@@ -141,15 +141,16 @@ HeightTable::HeightTable(const Lens& lens, const TableOptions& options)
   table_.psf.resize(entries);
 }
 
-bool HeightTable::hardly_rises() const {
-  constexpr double least_of_mean = 0.1;
-  return std::ranges::any_of(rays_, [](const std::vector<Ray>& rays) {
+std::size_t HeightTable::last_rising_field() const {
+  constexpr double least_of_mean = 0.4;
+  std::size_t last = table_.fields.size() - 1;
+  for (const std::vector<Ray>& rays : rays_) {
     const auto height = [](const Ray& ray) { return ray.chief ? std::abs(ray.chief->image_height_mm) : NAN; };
     const double least = least_of_mean * height(rays.back()) / double(rays.size() - 1);
-    for (std::size_t f = 1; f < rays.size(); ++f)
-      if (!(height(rays[f]) - height(rays[f - 1]) > least)) return true;
-    return false;
-  });
+    for (std::size_t f = 1; f <= last; ++f)
+      if (!(height(rays[f]) - height(rays[f - 1]) > least)) last = f - 1;
+  }
+  return last;
 }
 
 void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {

@@ -61,9 +61,10 @@ class HeightTable {
   /// Traces the chief rays. \throws InputError as build_lens_data_table().
   HeightTable(const Lens& lens, const TableOptions& options);
 
-  /// Whether the image of some wavelength all but turns back inwards between two fields: it moves by less
-  /// than a tenth of what it does on average, or not at all. Light per area is without bound there.
-  bool hardly_rises() const;
+  /// The last field up to which the image of every wavelength moves outwards from each field to the next, by
+  /// four tenths of what it does on average or more. Beyond it all but turns back, and light per area is
+  /// without bound.
+  std::size_t last_rising_field() const;
   /// Adds PSFs. From one thread; it takes as many as there are.
   void add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
                 const ProgressCallback& progress = {});
