@@ -8,6 +8,7 @@
 #include <petzval/image/formats/npz.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -34,18 +35,25 @@ std::string npy_bytes(const NamedArray& named, const std::string& path) {
       named.array.values);
 }
 
-/// The bytes of an entry, no more than it says. \throws InputError if they cannot be had.
+/// The bytes of an entry, no more than it says. \throws InputError if they cannot be had, or if their
+/// checksum is another.
 std::string entry_bytes(zip_t* archive, zip_uint64_t index, std::size_t size, const std::string& path) {
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(archive, index, 0),
                                                                &zip_fclose);
-  std::string bytes(size, '\0');
-  std::size_t done = 0;
-  while (file && done < size) {
-    const zip_int64_t got = zip_fread(file.get(), bytes.data() + done, size - done);
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
+  // A damaged file may say any size: room is made as bytes come.
+  constexpr std::size_t most_at_once = std::size_t{16} << 20;
+  std::string bytes;
+  zip_int64_t got = file ? 1 : -1;
+  while (got > 0 && bytes.size() < size) {
+    const std::size_t done = bytes.size();
+    bytes.resize(done + std::min(size - done, most_at_once));
+    got = zip_fread(file.get(), bytes.data() + done, bytes.size() - done);
+    bytes.resize(done + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
   }
-  if (!file || done < size) throw InputError(path, "is damaged: an array cannot be unpacked");
+  // libzip compares the checksum where the entry ends.
+  char beyond = 0;
+  if (bytes.size() < size || got < 0 || zip_fread(file.get(), &beyond, 1) != 0)
+    throw InputError(path, "is damaged: an array cannot be unpacked");
   return bytes;
 }
 
