@@ -44,6 +44,18 @@ TEST(Npz, EveryTruncationIsRefused) {
   EXPECT_NO_THROW(read_npz(path));
 }
 
+TEST(Npz, NamesOfArraysDoNotBreakTheLineOfAMessage) {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.npz");
+  write_npz(path, {{"two\nlines", {{1}, std::vector<float>{1}}}});
+  try {
+    find_array(read_npz(path), "light", path);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
 // A byte may be one that says nothing, such as the date of an entry.
 TEST(Npz, DamagedBytesAreRefusedOrReadAsTheyWere) {
   const test::Scratch scratch;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy_file.h>
 #include <petzval/image/formats/npy_header.h>
@@ -109,7 +110,7 @@ std::vector<NamedArray> read_npz(const std::string& path) {
     total += stat.size;
     std::string bytes = entry_bytes(archive.get(), at, stat.size, path);
     if (bytes.substr(0, 128).find("'descr': '<U") != std::string::npos) continue;
-    arrays.push_back({name, array_of(NpyFile(std::move(bytes), path + ": " + name))});
+    arrays.push_back({name, array_of(NpyFile(std::move(bytes), path + ": " + quotable(name)))});
   }
   return arrays;
 }
@@ -119,7 +120,7 @@ const NpyArray& find_array(const std::vector<NamedArray>& arrays, const std::str
   std::vector<std::string> names;
   for (const NamedArray& each : arrays) {
     if (each.name == name) return each.array;
-    names.push_back(each.name);
+    names.push_back(quotable(each.name));
   }
   throw InputError(path, fmt::format("has no array {}; it has {}", name,
                                      names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
