@@ -11,6 +11,7 @@
 #include "glass_formats.h"
 #include "lens_formats.h"
 #include "live_format.h"
+#include "npz_format.h"
 #include "raw_formats.h"
 #include "require.h"
 #include "scene_format.h"
@@ -293,6 +294,34 @@ const std::vector<Format>& formats() {
        {"\"quantity\": \"reflectance\",", "\"quantity\": \"temperature\",", "\"quantity\": \"emissivity\",",
         "\"scale\": 1e-3,", "\"unit\": \"mW/cm2/sr/um\",", "null", "[]", "{}", "'<u2'", "'>f8'", "(2, 2)",
         "True", "\x93NUMPY", std::string("\0\0\xC0\x7F", 4)}},
+      {"npz",
+       try_npz,
+       {"ARRAY psf\n",
+        "\nARRAY x_mm\n",
+        "irradiance",
+        "pitch_um",
+        "relative_illumination",
+        "paraxial_x_mm",
+        "magnification",
+        "(1, 1)",
+        "(2, 2, 1, 3, 3)",
+        "(0,)",
+        "'|O'",
+        "'<f2'",
+        "'>f8'",
+        "'<U4'",
+        "True",
+        "\x93NUMPY",
+        "PK\3\4",
+        std::string("\0\0\0\0\0\0\xF0\x7F", 8),
+        std::string(8, '\0'),
+        std::string(4, '\xFF')}},
+      {"sfrmap",
+       try_sfr_map,
+       {"\"mtf50_cpp\": 0.2,", "\"mtf50_cpp\": null,", "\"mtf50_deviation_cpp\": 0.01,", "\"line\": {},",
+        "\"level_correlations\": [1, -1, 0],", "\"sfr\": [1, 0],", "\"sfr_deviation\": [0, 0],",
+        "\"frequencies_cpp\": [0, 1],", "\"pictures\": [", "\"columns\": 1e6,", "[]", "{}", "null", "1e308",
+        "-1e308", "1e-320"}},
       {"scenemat",
        try_scene_mat,
        {std::string(4, '\xFF'), std::string(4, '\0'), std::string("\x0E\0\0\0", 4),

@@ -26,9 +26,9 @@ std::string MemoryFile::path() const {
   return fmt::format("/proc/self/fd/{}", descriptor_);
 }
 
-NamedFile::NamedFile(std::string_view bytes)
-    : path_((std::filesystem::temp_directory_path() / "petzval-fuzz-XXXXXX").string()) {
-  const int descriptor = mkstemp(path_.data());
+NamedFile::NamedFile(std::string_view bytes, std::string_view ending)
+    : path_((std::filesystem::temp_directory_path() / "petzval-fuzz-XXXXXX").string().append(ending)) {
+  const int descriptor = mkstemps(path_.data(), static_cast<int>(ending.size()));
   require(
       descriptor >= 0 && write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
       "a file that cannot be written");

@@ -21,10 +21,11 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// A file with a name, for libraries that ask where a link leads (HDF5).
+/// A file with a name, for libraries that ask where a link leads (HDF5) and readers that look at its ending.
 class NamedFile {
  public:
-  explicit NamedFile(std::string_view bytes);
+  /// \param ending  of the name, ".npz"
+  explicit NamedFile(std::string_view bytes, std::string_view ending = {});
   ~NamedFile();
   NamedFile(const NamedFile&) = delete;
   NamedFile& operator=(const NamedFile&) = delete;

@@ -2,12 +2,14 @@
 #include "table_formats.h"
 
 #include <petzval/base/text_lines.h>
+#include <petzval/measure/sfr/sfr_map.h>
 #include <petzval/optics/formats/iset_mat_table.h>
 #include <petzval/optics/formats/isetparms.h>
 #include <petzval/optics/formats/kept_beside.h>
 #include <petzval/optics/formats/measured.h>
 #include <petzval/optics/formats/psf_listing.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -115,6 +117,28 @@ bool try_kept(std::string_view bytes) {
   if (!accepted([&] { table = table_of_kept(std::string(bytes)); })) return false;
   const std::string text = kept_beside(*table);
   require(kept_beside(table_of_kept(text)) == text, "what is kept is kept differently again");
+  return true;
+}
+
+bool try_sfr_map(std::string_view bytes) {
+  std::vector<SfrMap> maps;
+  if (!accepted([&] { maps = parse_sfr_maps(std::string(bytes), "fuzz"); })) return false;
+  const auto finite = [](double number) { return std::isfinite(number); };
+  for (const SfrMap& map : maps) {
+    require(map.columns > 0 && map.rows > 0 && !map.edges.empty(), "a map without edges");
+    for (const MapEdge& edge : map.edges) {
+      const std::size_t count = edge.frequencies_cpp.size();
+      require(count > 0 && edge.contrast.size() == count && edge.deviation.size() == count &&
+                  (edge.correlation.empty() || edge.correlation.size() == count * count),
+              "lists of other lengths");
+      for (const double number : {edge.x_px, edge.y_px, edge.normal_rad, edge.half_length_px, edge.mtf50_cpp})
+        require(finite(number), "an edge at no place");
+      require(edge.mtf50_cpp > 0 && std::ranges::all_of(edge.frequencies_cpp, finite) &&
+                  std::ranges::all_of(edge.contrast, finite) && std::ranges::all_of(edge.deviation, finite) &&
+                  std::ranges::all_of(edge.deviation, [](double deviation) { return deviation >= 0; }),
+              "a contrast that is no number");
+    }
+  }
   return true;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entries of the formats that lens data tables come in.
+// Entries of the formats that lens data tables come in, and maps of sharpness.
 #pragma once
 
 #include <string_view>
@@ -22,5 +22,9 @@ bool try_measured(std::string_view bytes);
 
 /// What Petzval keeps beside a table is refused in one line, or kept again the same.
 bool try_kept(std::string_view bytes);
+
+/// What `petzval sfr` prints of a picture is refused in one line, or makes edges whose numbers are all
+/// finite.
+bool try_sfr_map(std::string_view bytes);
 
 }  // namespace petzval::fuzz

@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/simulate/vibration.h>
+
+#include <cmath>
 
 #include "command.h"
 
@@ -12,6 +16,20 @@ namespace petzval::app {
 namespace {
 
 constexpr const char* event_group = "The event camera";
+
+/// "0.2,0", or the first alone. \throws InputError for anything else.
+std::array<double, 2> sideways(const std::string& text) {
+  std::array<double, 2> numbers{};
+  const std::vector<std::string> words = split_at(text, ',');
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::optional<double> number = parse_number(trimmed(words[i]));
+    if (i >= numbers.size() || !number || !std::isfinite(*number))
+      throw InputError(fmt::format("--move {}: metres a second to the right and up, as 0.2,0, would be right",
+                                   quotable(text)));
+    numbers[i] = *number;
+  }
+  return numbers;
+}
 
 }  // namespace
 
@@ -23,10 +41,10 @@ void ClipChoice::add_to(CLI::App& command) {
   command.add_option("--pitch", pitch_deg_per_s, "The camera turns up [degrees a second]")
       ->check(finite_number());
   command
-      .add_option("--move", move_m_per_s,
-                  "RIGHT,UP: the scene moves [metres a second]; one at a finite --scene-distance")
-      ->delimiter(',')
-      ->expected(1, 2);
+      .add_option_function<std::string>(
+          "--move", [this](const std::string& text) { move_m_per_s = sideways(text); },
+          "RIGHT,UP: the scene moves [metres a second]; one at a finite --scene-distance")
+      ->type_name("RIGHT,UP");
   command.add_option("--path", path,
                      "A .csv of the way: columns t_s, and any of pan_deg, pitch_deg, right_m, up_m");
   command.add_option(
@@ -97,9 +115,7 @@ ClipOptions ClipChoice::options(const Sensor& sensor, std::uint64_t seed) const 
   ClipOptions options = given;
   options.shutter = chosen_shutter(sensor);
   options.flicker = LampFlicker::parse(flicker);
-  SceneAim per_second{pan_deg_per_s, pitch_deg_per_s, 0, 0};
-  if (!move_m_per_s.empty()) per_second.right_m = move_m_per_s[0];
-  if (move_m_per_s.size() > 1) per_second.up_m = move_m_per_s[1];
+  const SceneAim per_second{pan_deg_per_s, pitch_deg_per_s, move_m_per_s[0], move_m_per_s[1]};
   if (!path.empty() && !per_second.is_straight())
     throw InputError("--path says all that moves; without --pan, --pitch and --move it would be right");
   options.validate();

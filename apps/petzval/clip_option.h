@@ -4,6 +4,7 @@
 
 #include <petzval/simulate/clip.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ namespace petzval::app {
 struct ClipChoice {
   ClipOptions given;
   double pan_deg_per_s = 0, pitch_deg_per_s = 0;
-  std::vector<double> move_m_per_s, event_thresholds;
+  std::array<double, 2> move_m_per_s{};  ///< to the right and up
+  std::vector<double> event_thresholds;
   std::string path, vibration, shutter = "sensor", flicker = "none";
   std::optional<double> row_time_us;
   bool events = false;

@@ -48,7 +48,8 @@ Coating& column(Losses& losses, const std::string& name, const std::string& file
 }
 
 void read_reflectances(const std::string& file, Losses& losses) {
-  std::istringstream in(read_whole_file(file));
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  std::istringstream in(read_whole_file(file, most_bytes));
   std::vector<std::string> header;
   std::string text;
   for (int line = 1; std::getline(in, text); ++line) {

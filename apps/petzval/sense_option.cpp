@@ -22,7 +22,9 @@ void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
                   "comes to 12.7 %)")
       ->check(CLI::IsMember({"highlights", "average"}))
       ->capture_default_str();
+  constexpr double most_ev = 40;  // as data sets have it
   command.add_option("--exposure-compensation", given.compensation_ev, "More light by this many stops [EV]")
+      ->check(CLI::Range(-most_ev, most_ev))
       ->capture_default_str();
   if (!after_light)
     command.add_option("--f-number", given.f_number, "For exposure values; default: the lens's, where known");

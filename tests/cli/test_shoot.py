@@ -71,6 +71,8 @@ class Shoot(ProgramTest):
                             (("--vibration", "much"), ("0.02@1-20",)),
                             (("--pan", "x"), ("--pan",)),
                             (("--move", "1"), ("--scene-distance",)),
+                            (("--move", ",0"), ("--move ,0", "as 0.2,0")),
+                            (("--exposure-compensation", "-1e300"), ("--exposure-compensation", "not in range -40")),
                             (("--step", "linear=a.npy"), ("petzval develop",)),
                             (("--row-time", "-1"), ("--row-time",))):
             with self.subTest(words=words):

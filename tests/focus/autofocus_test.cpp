@@ -226,6 +226,15 @@ TEST(Autofocus, RefusesWhatMakesNoSense) {
   EXPECT_THROW(find_focus(camera({Subject{}}), {FocusZone{}}, options), InputError);
   options.farthest_mm = 70;
   EXPECT_THROW(find_focus(camera({Subject{}}), {}, options), InputError);
+  options.most_evaluations = options.coarse - 1;
+  try {
+    find_focus(camera({Subject{}}), {FocusZone{}}, options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("in 4 evaluations; 5 or more"), std::string::npos)
+        << error.what();
+  }
+  options.most_evaluations = FocusSearchOptions().most_evaluations;
   const PicturesAt blank = [](double) {
     return std::vector<ZonePicture>{{{8, 8, std::vector<double>(64, 1.0)}, {}}};
   };

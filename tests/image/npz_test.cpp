@@ -4,6 +4,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npz.h>
+#include <sys/resource.h>
 
 #include "scratch.h"
 
@@ -43,21 +44,58 @@ TEST(Npz, EveryTruncationIsRefused) {
   EXPECT_NO_THROW(read_npz(path));
 }
 
-TEST(Npz, DamagedBytesAreRefusedOrRead) {
+TEST(Npz, NamesOfArraysDoNotBreakTheLineOfAMessage) {
   const test::Scratch scratch;
   const std::string path = scratch.path("a.npz");
-  write_npz(path, {{"irradiance", {{1, 2, 1}, std::vector<float>{1, 2}}}});
+  write_npz(path, {{"two\nlines", {{1}, std::vector<float>{1}}}});
+  try {
+    find_array(read_npz(path), "light", path);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+// A byte may be one that says nothing, such as the date of an entry.
+TEST(Npz, DamagedBytesAreRefusedOrReadAsTheyWere) {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.npz");
+  const NpyArray light{{1, 2, 1}, std::vector<float>{1, 2}};
+  write_npz(path, {{"irradiance", light}});
   const std::string bytes = read_whole_file(path);
+  int read = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (const int change : {1, 0x80, 0xff}) {
       std::string damaged = bytes;
       damaged[at] = static_cast<char>(damaged[at] ^ change);
-      write_whole_file(path, damaged);
+      scratch.with("a.npz", damaged);
       try {
-        read_irradiance(path, {{550}, 4});
+        for (const NamedArray& each : read_npz(path)) {
+          EXPECT_EQ(each.array.shape, light.shape) << at;
+          EXPECT_EQ(each.array.values, light.values) << at;
+        }
+        ++read;
       } catch (const InputError&) {
       }
     }
+  EXPECT_GT(read, 0);
+}
+
+// The size that an archive states is not to be trusted: memory is taken for bytes that come.
+TEST(Npz, AStatedSizeTakesNoMemory) {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("a.npz");
+  write_npz(path, {{"irradiance", {{1, 2, 1}, std::vector<float>{1, 2}}}});
+  std::string bytes = read_whole_file(path);
+  const std::size_t entry = bytes.find("PK\x01\x02"), size_at = entry + 24;
+  ASSERT_NE(entry, bytes.npos);
+  bytes.replace(size_at, 4, "\xFF\xFF\xFF\x7F");  // two gigabytes
+  scratch.with("a.npz", bytes);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_THROW(read_npz(path), InputError);
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 1 << 18);  // KiB
 }
 
 TEST(Npz, HoldsIrradianceWithItsWavelengthsAndPitch) {

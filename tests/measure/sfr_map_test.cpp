@@ -49,25 +49,31 @@ TEST(SfrMap, SeveralPicturesAreSeveralMaps) {
 }
 
 TEST(SfrMap, RefusesInOneLine) {
-  for (const auto& [text, says] :
-       {std::pair{std::string("[]"), "no JSON object"},
-        {std::string("{"), "no JSON object"},
-        {std::string(R"({"columns": 3})"), "list of edges"},
-        {std::string(R"({"columns": 640, "rows": 0, "edges": []})"), "how many rows"},
-        {std::string(R"({"columns": 640, "rows": 480, "edges": []})"), "no edge"},
-        {std::string(R"({"pictures": []})"), "empty list"},
-        {picture(R"("mtf50_cpp": null)"), "no edge"},
-        {picture(R"("mtf50_cpp": 0.2)"), "no line"},
-        {picture(R"("mtf50_cpp": -0.2, )" + line), "not positive"},
-        {picture(R"("mtf50_cpp": 0.2, )" + line), "mtf50_deviation_cpp"},
-        {picture(R"("mtf50_cpp": "x", )" + line), "no number"},
-        {picture(R"("mtf50_cpp": 0.2, "level_correlations": [2, 0, 0], )" + line + "," + curve), "-1 to 1"},
-        {picture(R"("mtf50_cpp": 0.2, "frequencies_cpp": [0, 0], "sfr": [1, 1], "sfr_deviation": [0, 0], )" +
-                 line),
-         "rising"},
-        {picture(R"("mtf50_cpp": 0.2, "frequencies_cpp": [0, 1], "sfr": [1], "sfr_deviation": [0, 0], )" +
-                 line),
-         "as long as"}}) {
+  for (
+      const auto& [text, says] :
+      {std::pair{std::string("[]"), "no JSON object"},
+       {std::string("{"), "no JSON object"},
+       {std::string(R"({"columns": 3})"), "list of edges"},
+       {std::string(R"({"columns": 640, "rows": 0, "edges": []})"), "how many rows"},
+       {std::string(R"({"columns": 640, "rows": 480, "edges": []})"), "no edge"},
+       {std::string(R"({"pictures": []})"), "empty list"},
+       {picture(R"("mtf50_cpp": null)"), "no edge"},
+       {picture(R"("mtf50_cpp": 0.2)"), "no line"},
+       {picture(R"("mtf50_cpp": -0.2, )" + line), "not positive"},
+       {picture(R"("mtf50_cpp": 0.2, )" + line), "mtf50_deviation_cpp"},
+       {picture(R"("mtf50_cpp": "x", )" + line), "no number"},
+       {picture(R"("mtf50_cpp": 0.2, "level_correlations": [2, 0, 0], )" + line + "," + curve), "-1 to 1"},
+       {picture(R"("mtf50_cpp": 0.2, "frequencies_cpp": [0, 0], "sfr": [1, 1], "sfr_deviation": [0, 0], )" +
+                line),
+        "rising"},
+       {picture(R"("mtf50_cpp": 0.2, "frequencies_cpp": [0, 1], "sfr": [1], "sfr_deviation": [0, 0], )" +
+                line),
+        "as long as"},
+       // At MTF50, beyond the curve, it would be 1 - 1e308 · (0.2 / 1e-300).
+       {picture(
+            R"("mtf50_cpp": 0.2, "frequencies_cpp": [0, 1e-300], "sfr": [1, -1e308], "sfr_deviation": [0, 0], )" +
+            line),
+        "no contrast"}}) {
     try {
       parse_sfr_maps(text, "map.json");
       ADD_FAILURE() << text;

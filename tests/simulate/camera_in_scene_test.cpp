@@ -98,6 +98,29 @@ TEST(CameraInScene, StandsWhereItIsPut) {
   EXPECT_NEAR(depth_of_pixel_m(ahead, {std::ceil(edge) + 1, 30}), 5, 1e-3);
 }
 
+TEST(CameraInScene, SaysThatAPlaceIsTooFarAway) {
+  const TwoWalls walls;
+  const auto refusal = [](const RenderRequest& request) {
+    try {
+      prepare_scene(request);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  RenderRequest request = walls.request();
+  request.camera_at = {0.0, 0.0, -1e7};
+  EXPECT_EQ(refusal(request), "");
+  for (const double far : {1e9, 1e300}) {
+    request.camera_at = {0.0, 0.0, -far};
+    EXPECT_NE(refusal(request).find("too far away"), std::string::npos) << refusal(request);
+    RenderRequest moving = walls.request();
+    moving.look_move = {far, 0.0, 0.0};
+    moving.camera_move = {far, 0.0, 0.0};
+    EXPECT_NE(refusal(moving).find("`look_move`"), std::string::npos) << refusal(moving);
+  }
+}
+
 TEST(CameraInScene, StandsBackWhereTheSceneHasNoCamera) {
   const test::Scratch scratch;
   // A square of 2 × 2 about (5, 0, 0).

@@ -115,6 +115,9 @@ class ParameterReader {
     if (!(result.from <= result.to)) entry.fail("has its ends the wrong way round");
     if (kind == Distribution::Kind::log_uniform && !(result.from > 0))
       entry.fail("starts at or below 0, which has no logarithm");
+    if (!std::isfinite(kind == Distribution::Kind::log_uniform ? result.to / result.from
+                                                               : result.to - result.from))
+      entry.fail("has its ends farther apart than a number can say; nearer ones would be right");
     return result;
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/focus/autofocus.h>
 #include <petzval/focus/brent_search.h>
@@ -123,8 +124,13 @@ double FocusResult::noise_share() const {
 FocusResult find_focus(const PicturesAt& pictures_at, const std::vector<FocusZone>& zones,
                        const FocusSearchOptions& options) {
   check_film_range(options.nearest_mm, options.farthest_mm);
-  if (options.coarse < 3 || options.most_evaluations < options.coarse)
-    throw InputError("a search for focus takes at least 3 coarse evaluations, and no fewer in all");
+  constexpr int fewest_coarse = 3;
+  if (options.coarse < fewest_coarse)
+    throw InputError(fmt::format("a search for focus with {} coarse evaluations; {} or more would be right",
+                                 options.coarse, fewest_coarse));
+  if (options.most_evaluations < options.coarse)
+    throw InputError(fmt::format("a search for focus in {} evaluations; {} or more would be right",
+                                 options.most_evaluations, options.coarse));
   const double range = options.farthest_mm - options.nearest_mm;
   const double depth = options.depth_mm > 0 ? options.depth_mm : range / 100;
   const std::vector<int> scales = scales_for(range / (options.coarse - 1), depth);

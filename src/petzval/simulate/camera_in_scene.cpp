@@ -91,7 +91,10 @@ void place_camera(const RenderRequest& request, const std::optional<Lens>& lens,
     looks = Transform::look_at(eye, target, up).inverse();
     camera.world_from_camera = *looks;
   } catch (const InputError&) {
-    throw InputError("`camera_at` and `look_at` are one place; two would be right");
+    throw InputError(
+        !(length(aim) > 0)
+            ? "`camera_at` and `look_at` are one place; two would be right"
+            : "`camera_at` or `look_at` is too far away; places within 1e+07 scene units would be right");
   }
   // A scene that is seen in a mirror stays so.
   if (was.swaps_handedness() != camera.world_from_camera.swaps_handedness())
@@ -110,7 +113,10 @@ void place_camera(const RenderRequest& request, const std::optional<Lens>& lens,
   for (const double time : {0.25, 0.5, 0.75, 1.0}) try {
       camera.motion->world_from_camera(time);
     } catch (const InputError&) {
-      throw InputError("`camera_move` brings the camera to what it looks at; less would be right");
+      throw InputError(
+          "`camera_move` and `look_move` bring the camera to what it looks at, or too far away; less would "
+          "be "
+          "right");
     }
 }
 

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy_file.h>
 #include <petzval/image/formats/npy_header.h>
 #include <petzval/image/formats/npz.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -34,18 +36,25 @@ std::string npy_bytes(const NamedArray& named, const std::string& path) {
       named.array.values);
 }
 
-/// The bytes of an entry, no more than it says. \throws InputError if they cannot be had.
+/// The bytes of an entry, no more than it says. \throws InputError if they cannot be had, or if their
+/// checksum is another.
 std::string entry_bytes(zip_t* archive, zip_uint64_t index, std::size_t size, const std::string& path) {
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen_index(archive, index, 0),
                                                                &zip_fclose);
-  std::string bytes(size, '\0');
-  std::size_t done = 0;
-  while (file && done < size) {
-    const zip_int64_t got = zip_fread(file.get(), bytes.data() + done, size - done);
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
+  // A damaged file may say any size: room is made as bytes come.
+  constexpr std::size_t most_at_once = std::size_t{16} << 20;
+  std::string bytes;
+  zip_int64_t got = file ? 1 : -1;
+  while (got > 0 && bytes.size() < size) {
+    const std::size_t done = bytes.size();
+    bytes.resize(done + std::min(size - done, most_at_once));
+    got = zip_fread(file.get(), bytes.data() + done, bytes.size() - done);
+    bytes.resize(done + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
   }
-  if (!file || done < size) throw InputError(path, "is damaged: an array cannot be unpacked");
+  // libzip compares the checksum where the entry ends.
+  char beyond = 0;
+  if (bytes.size() < size || got < 0 || zip_fread(file.get(), &beyond, 1) != 0)
+    throw InputError(path, "is damaged: an array cannot be unpacked");
   return bytes;
 }
 
@@ -101,7 +110,7 @@ std::vector<NamedArray> read_npz(const std::string& path) {
     total += stat.size;
     std::string bytes = entry_bytes(archive.get(), at, stat.size, path);
     if (bytes.substr(0, 128).find("'descr': '<U") != std::string::npos) continue;
-    arrays.push_back({name, array_of(NpyFile(std::move(bytes), path + ": " + name))});
+    arrays.push_back({name, array_of(NpyFile(std::move(bytes), path + ": " + quotable(name)))});
   }
   return arrays;
 }
@@ -111,7 +120,7 @@ const NpyArray& find_array(const std::vector<NamedArray>& arrays, const std::str
   std::vector<std::string> names;
   for (const NamedArray& each : arrays) {
     if (each.name == name) return each.array;
-    names.push_back(each.name);
+    names.push_back(quotable(each.name));
   }
   throw InputError(path, fmt::format("has no array {}; it has {}", name,
                                      names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));

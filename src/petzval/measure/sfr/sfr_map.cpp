@@ -136,8 +136,11 @@ class EdgeReader {
       edge.frequencies_cpp = {edge.mtf50_cpp}, edge.contrast = {0.5};
       edge.deviation = {usual_fall * deviation / edge.mtf50_cpp};
     }
-    for (const double deviation : edge.deviation)
-      if (!(deviation >= 0)) refuse_map(file_, name_ + ": a deviation is negative");
+    for (std::size_t i = 0; i < edge.contrast.size(); ++i) {
+      if (!std::isfinite(edge.frequencies_cpp[i] + edge.contrast[i] + edge.deviation[i]))
+        refuse_map(file_, fmt::format("{}: its curve is of no contrast; {}", name_, wanted));
+      if (edge.deviation[i] < 0) refuse_map(file_, name_ + ": a deviation is negative");
+    }
     return edge;
   }
 
