@@ -114,9 +114,8 @@ void place_camera(const RenderRequest& request, const std::optional<Lens>& lens,
       camera.motion->world_from_camera(time);
     } catch (const InputError&) {
       throw InputError(
-          "`camera_move` and `look_move` bring the camera to what it looks at, or too far away; less would "
-          "be "
-          "right");
+          "`camera_move` and `look_move` bring the camera to what it looks at, or too far away; "
+          "less would be right");
     }
 }
 
