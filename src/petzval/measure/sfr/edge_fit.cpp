@@ -126,8 +126,7 @@ void EdgeFit::run(const SfrOptions& options) {
 void EdgeFit::fit_to_shapes() {
   constexpr double quiet = 1e-3;  // samples that say all themselves
   if (noise_ < quiet * model_->step()) return;
-  smoothing_ = -1;
-  fit_profile();
+  take_shapes({});
   constexpr double plain_deviations = 4, least_share = 5e-3;
   const double deviation = noise_ * std::sqrt(unknowns_ / static_cast<double>(profile_.points.size()));
   if (overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step())) return;
@@ -136,14 +135,17 @@ void EdgeFit::fit_to_shapes() {
   for (int round = 0; round < rounds; ++round) {
     const double mtf50 = mtf50_cpp(*model_);
     if (!EdgeShapes::possible(mtf50, line_.normal_rad)) break;
-    shapes_.emplace(mtf50, line_.normal_rad);
-    smoothing_ = -1;
-    fit_profile();
+    take_shapes(EdgeShapes(mtf50, line_.normal_rad));
   }
-  if (!shapes_ || model_->criterion() < smooth) return;
-  shapes_.reset();
+  if (model_->options().prior.shapes && model_->criterion() >= smooth) take_shapes({});
+}
+
+void EdgeFit::take_shapes(const std::optional<EdgeShapes>& shapes) {
+  EdgePriorOptions prior = model_->options().prior;
+  prior.noise = noise_, prior.shapes = shapes;
+  model_->take_prior(prior, profile_.points);
   smoothing_ = -1;
-  fit_profile();
+  take_profile();
 }
 
 void EdgeFit::settle_by_evidence(const SfrOptions& options) {
@@ -223,7 +225,6 @@ void EdgeFit::fit_profile() {
   options.knot_px = coarse_ ? 0.7 : options.core_px > 45 ? 0.5 : 0.25;
   options.light_order = light_order_;
   options.smoothing = smoothing_;
-  options.prior.shapes = shapes_;
   if (in_rows_) options.prior.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
   take_profile();
@@ -231,8 +232,7 @@ void EdgeFit::fit_profile() {
 
 void EdgeFit::take_profile() {
   if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
-  profile_.variation = model_->variation();
-  profile_.fitted = model_->fitted();
+  model_->evaluate_points(profile_.points, profile_.fitted, profile_.variation);
   expect_light();
   if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
   noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
