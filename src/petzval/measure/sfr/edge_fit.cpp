@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/measure/sfr/edge_fit.h>
 #include <petzval/measure/sfr/sample_comb.h>
@@ -100,7 +101,7 @@ EdgeFit::EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess,
 }
 
 void EdgeFit::run(const SfrOptions& options) {
-  bend_by_guess(options.edge_order);
+  bend_by_guess(options);
   // The first profile is rough, and tells the noise.
   fit_placed();
   align(line_, line_alignment(), 1);
@@ -244,7 +245,8 @@ EdgeAlignment EdgeFit::line_alignment() const {
 
 /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
 /// scatters.
-void EdgeFit::bend_by_guess(int asked) {
+void EdgeFit::bend_by_guess(const SfrOptions& options) {
+  const int asked = options.edge_order;
   if (asked == 1) return;
   EdgeLine bent = line_;
   bent.bend.assign(static_cast<std::size_t>(asked == 0 ? 3 : asked), 0);
@@ -262,6 +264,13 @@ void EdgeFit::bend_by_guess(int asked) {
     change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
     if (align(bent, change, 1) < 1e-3) break;
   }
+  // Noise can hide from an outline that it is an arc, but not from all samples together.
+  constexpr double arc_deviations = 3;
+  if (bent.radius_px() < options.least_radius_px &&
+      std::abs(bent.bend[1]) > arc_deviations * change.deviation[2])
+    throw InputError(
+        fmt::format("an arc with a radius of {:.0f} pixels, where straight edges have at least {:.0f}",
+                    bent.radius_px(), options.least_radius_px));
   constexpr double plainly_bent_px = 0.1;
   bool plainly = asked > 1;
   for (int k = 2; k <= change.order; ++k) {

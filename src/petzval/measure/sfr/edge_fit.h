@@ -52,7 +52,7 @@ class EdgeFit {
   void fit_profile();
   void take_profile();
   EdgeAlignment line_alignment() const;
-  void bend_by_guess(int asked);
+  void bend_by_guess(const SfrOptions& options);
   void fit_to_shapes();
   void take_shapes(const std::optional<EdgeShapes>& shapes);
   void settle();
