@@ -127,7 +127,9 @@ TEST(FindEdges, SidesOfATriangleAreFoundInNoise) {
   }
 }
 
-/// A disc whose rim passes through the middle, with a Gaussian blur of one pixel.
+constexpr double rim_x = 60.3, rim_y = 59.8, rim_cos = 0.9925, rim_sin = 0.1222;
+
+/// A disc whose rim passes through the middle at 7 degrees, with a Gaussian blur of one pixel.
 Plane noisy_disc(double radius_px, double noise, unsigned seed) {
   constexpr int size = 120;
   Plane plane{size, size, {}};
@@ -135,7 +137,8 @@ Plane noisy_disc(double radius_px, double noise, unsigned seed) {
   std::normal_distribution<double> normal(0, noise);
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
-      const double inside = radius_px - std::hypot(column + 0.5 - 60.3 + radius_px, row + 0.5 - 59.8);
+      const double inside = radius_px - std::hypot(column + 0.5 - rim_x + radius_px * rim_cos,
+                                                   row + 0.5 - rim_y + radius_px * rim_sin);
       plane.values.push_back(0.5 * std::erfc(-inside / std::sqrt(2)) + normal(random));
     }
   return plane;
@@ -144,7 +147,8 @@ Plane noisy_disc(double radius_px, double noise, unsigned seed) {
 /// What a stretch of the rim of such a disc measures that has been taken for an edge.
 EdgeMeasurement measure_rim(double radius_px, double half_length, double noise, unsigned seed) {
   FoundEdge edge;
-  edge.from = {60.3, 59.8 - half_length}, edge.to = {60.3, 59.8 + half_length};
+  edge.from = {rim_x + half_length * rim_sin, rim_y - half_length * rim_cos};
+  edge.to = {rim_x - half_length * rim_sin, rim_y + half_length * rim_cos};
   edge.reach_dark_px = edge.reach_bright_px = 15;
   edge.sampled_from = -half_length + 2, edge.sampled_to = half_length - 2;
   SfrOptions options;

@@ -406,6 +406,7 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
         for (int r = 0; r < fixed; ++r) entry(model.basis_.place(r), row.fixed[r]);
       },
       rounding_);
+  rounding_ = Eigen::MatrixXd(rounding_.selfadjointView<Eigen::Lower>());
 }
 
 void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, std::complex<double> value, double* gradient,
@@ -440,19 +441,20 @@ std::vector<double> EdgeSpreadModel::Deviation::of_moduli(
       gradient_of_modulus(frequencies_cpp[first + k], transforms[first + k], x.data() + k,
                           BorderedBand::lanes);
     model_.factor_.solve_in_place(x);
-    std::array<double, lanes> variance = spread_.quadratic(x);
-    for (std::size_t k = 0; k < count; ++k) {
-      variance[k] += quadratic_of_rounding(x, static_cast<int>(k));
-      deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
-    }
+    const std::array<double, lanes> variance = variances(x);
+    for (std::size_t k = 0; k < count; ++k) deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
   }
   return deviations;
 }
 
-double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Block& x, int lane) const {
-  if (rounding_.size() == 0) return 0;
-  const Eigen::VectorXd one = x.col(lane);
-  return one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
+std::array<double, BorderedBand::lanes> EdgeSpreadModel::Deviation::variances(
+    const BorderedBand::Block& x) const {
+  std::array<double, BorderedBand::lanes> result = spread_.quadratic(x);
+  if (rounding_.size() == 0) return result;
+  const BorderedBand::Block of_rounding = rounding_ * x;
+  Eigen::Map<Eigen::Array<double, 1, BorderedBand::lanes>>(result.data()) +=
+      (x.array() * of_rounding.array()).colwise().sum();
+  return result;
 }
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
@@ -463,8 +465,7 @@ std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) x.col(3 + k) = x.col(pairs[k][0]) + x.col(pairs[k][1]);
-  std::array<double, BorderedBand::lanes> squares = spread_.quadratic(x);
-  for (int k = 0; k < 6; ++k) squares[static_cast<std::size_t>(k)] += quadratic_of_rounding(x, k);
+  const std::array<double, BorderedBand::lanes> squares = variances(x);
   std::array<double, 3> result{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double a = squares[static_cast<std::size_t>(pairs[k][0])],

@@ -124,14 +124,15 @@ class EdgeSpreadModel {
     std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
 
    private:
-    double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
+    /// xᵀ (spread + rounding) x of each vector.
+    std::array<double, BorderedBand::lanes> variances(const BorderedBand::Block& x) const;
     /// d|transform|/d(right side), into every `stride`-th place.
     void gradient_of_modulus(double frequency_cpp, std::complex<double> transform, double* gradient,
                              int stride) const;
 
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations
-    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it, its lower half; empty without
+    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it; empty without
   };
 
  private:
