@@ -127,6 +127,50 @@ TEST(FindEdges, SidesOfATriangleAreFoundInNoise) {
   }
 }
 
+constexpr double rim_x = 60.3, rim_y = 59.8, rim_cos = 0.9925, rim_sin = 0.1222;
+
+/// A disc whose rim passes through the middle at 7 degrees, with a Gaussian blur of one pixel.
+Plane noisy_disc(double radius_px, double noise, unsigned seed) {
+  constexpr int size = 120;
+  Plane plane{size, size, {}};
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, noise);
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const double inside = radius_px - std::hypot(column + 0.5 - rim_x + radius_px * rim_cos,
+                                                   row + 0.5 - rim_y + radius_px * rim_sin);
+      plane.values.push_back(0.5 * std::erfc(-inside / std::sqrt(2)) + normal(random));
+    }
+  return plane;
+}
+
+/// What a stretch of the rim of such a disc measures that has been taken for an edge.
+EdgeMeasurement measure_rim(double radius_px, double half_length, double noise, unsigned seed) {
+  FoundEdge edge;
+  edge.from = {rim_x + half_length * rim_sin, rim_y - half_length * rim_cos};
+  edge.to = {rim_x - half_length * rim_sin, rim_y + half_length * rim_cos};
+  edge.reach_dark_px = edge.reach_bright_px = 15;
+  edge.sampled_from = -half_length + 2, edge.sampled_to = half_length - 2;
+  SfrOptions options;
+  options.least_radius_px = EdgeSearchOptions().least_radius_px();
+  options.start = edge.line();
+  return measure_edge(samples_about(noisy_disc(radius_px, noise, seed), edge), 1, options);
+}
+
+TEST(FindEdges, ArcsAreToldFromStraightAndBentEdgesInNoise) {
+  // The chord of the shortest edge leaves an arc of 150 pixels by 0.75, which is what outlines may.
+  EXPECT_EQ(EdgeSearchOptions().least_radius_px(), 150);
+  for (const double noise : {0.02, 0.1})
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+      for (const double radius : {25, 40, 60})
+        EXPECT_THROW(measure_rim(radius, 15, noise, seed), InputError)
+            << radius << ' ' << noise << ' ' << seed;
+      // The bend of a lens, and next to none.
+      for (const double radius : {1e3, 1e6})
+        EXPECT_NO_THROW(measure_rim(radius, 30, noise, seed)) << radius << ' ' << noise << ' ' << seed;
+    }
+}
+
 TEST(FindEdges, WhatIsMissingFromAHalfPlaneIsAnAreaIntegral) {
   // Far beyond the edge on the bright side of a square 100 px wide, against a sum over cells of 1/9 px².
   const Shot shot = shoot(square_at(0), 240, 8);

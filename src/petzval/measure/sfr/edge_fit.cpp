@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/measure/sfr/edge_fit.h>
 #include <petzval/measure/sfr/sample_comb.h>
@@ -100,7 +101,7 @@ EdgeFit::EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess,
 }
 
 void EdgeFit::run(const SfrOptions& options) {
-  bend_by_guess(options.edge_order);
+  bend_by_guess(options);
   // The first profile is rough, and tells the noise.
   fit_placed();
   align(line_, line_alignment(), 1);
@@ -126,8 +127,7 @@ void EdgeFit::run(const SfrOptions& options) {
 void EdgeFit::fit_to_shapes() {
   constexpr double quiet = 1e-3;  // samples that say all themselves
   if (noise_ < quiet * model_->step()) return;
-  smoothing_ = -1;
-  fit_profile();
+  take_shapes({});
   constexpr double plain_deviations = 4, least_share = 5e-3;
   const double deviation = noise_ * std::sqrt(unknowns_ / static_cast<double>(profile_.points.size()));
   if (overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step())) return;
@@ -136,14 +136,17 @@ void EdgeFit::fit_to_shapes() {
   for (int round = 0; round < rounds; ++round) {
     const double mtf50 = mtf50_cpp(*model_);
     if (!EdgeShapes::possible(mtf50, line_.normal_rad)) break;
-    shapes_.emplace(mtf50, line_.normal_rad);
-    smoothing_ = -1;
-    fit_profile();
+    take_shapes(EdgeShapes(mtf50, line_.normal_rad));
   }
-  if (!shapes_ || model_->criterion() < smooth) return;
-  shapes_.reset();
+  if (model_->options().prior.shapes && model_->criterion() >= smooth) take_shapes({});
+}
+
+void EdgeFit::take_shapes(const std::optional<EdgeShapes>& shapes) {
+  EdgePriorOptions prior = model_->options().prior;
+  prior.noise = noise_, prior.shapes = shapes;
+  model_->take_prior(prior, profile_.points);
   smoothing_ = -1;
-  fit_profile();
+  take_profile();
 }
 
 void EdgeFit::settle_by_evidence(const SfrOptions& options) {
@@ -223,7 +226,6 @@ void EdgeFit::fit_profile() {
   options.knot_px = coarse_ ? 0.7 : options.core_px > 45 ? 0.5 : 0.25;
   options.light_order = light_order_;
   options.smoothing = smoothing_;
-  options.prior.shapes = shapes_;
   if (in_rows_) options.prior.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
   take_profile();
@@ -231,8 +233,7 @@ void EdgeFit::fit_profile() {
 
 void EdgeFit::take_profile() {
   if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
-  profile_.variation = model_->variation();
-  profile_.fitted = model_->fitted();
+  model_->evaluate_points(profile_.points, profile_.fitted, profile_.variation);
   expect_light();
   if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
   noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
@@ -244,7 +245,8 @@ EdgeAlignment EdgeFit::line_alignment() const {
 
 /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
 /// scatters.
-void EdgeFit::bend_by_guess(int asked) {
+void EdgeFit::bend_by_guess(const SfrOptions& options) {
+  const int asked = options.edge_order;
   if (asked == 1) return;
   EdgeLine bent = line_;
   bent.bend.assign(static_cast<std::size_t>(asked == 0 ? 3 : asked), 0);
@@ -262,6 +264,13 @@ void EdgeFit::bend_by_guess(int asked) {
     change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
     if (align(bent, change, 1) < 1e-3) break;
   }
+  // Noise can hide from an outline that it is an arc, but not from all samples together.
+  constexpr double arc_deviations = 3;
+  if (bent.radius_px() < options.least_radius_px &&
+      std::abs(bent.bend[1]) > arc_deviations * change.deviation[2])
+    throw InputError(
+        fmt::format("an arc with a radius of {:.0f} pixels, where straight edges have at least {:.0f}",
+                    bent.radius_px(), options.least_radius_px));
   constexpr double plainly_bent_px = 0.1;
   bool plainly = asked > 1;
   for (int k = 2; k <= change.order; ++k) {

@@ -52,8 +52,9 @@ class EdgeFit {
   void fit_profile();
   void take_profile();
   EdgeAlignment line_alignment() const;
-  void bend_by_guess(int asked);
+  void bend_by_guess(const SfrOptions& options);
   void fit_to_shapes();
+  void take_shapes(const std::optional<EdgeShapes>& shapes);
   void settle();
   void settle_by_evidence(const SfrOptions& options);
   void settle_in_rows(const SfrOptions& options);
@@ -66,7 +67,6 @@ class EdgeFit {
   EdgeLine line_;
   EdgeProfile profile_;
   std::optional<EdgeSpreadModel> model_;
-  std::optional<EdgeShapes> shapes_;
   std::vector<double> missing_, light_;  ///< of each sample
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
   int light_order_ = 0;

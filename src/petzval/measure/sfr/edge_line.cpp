@@ -238,6 +238,10 @@ double EdgeLine::angle_deg() const {
   return angle;
 }
 
+double EdgeLine::radius_px() const {
+  return bend.size() < 2 || bend[1] == 0 ? HUGE_VAL : half_length * half_length / (2 * std::abs(bend[1]));
+}
+
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
   const Overview o = overview_of(samples);
   const std::vector<EdgeSample> few = thinned(samples, 20000);

@@ -24,6 +24,8 @@ struct EdgeLine {
   /// The edge against the nearer pixel axis, −45 to 45 degrees, positive from +x towards +y (clockwise in the
   /// picture). For a bent edge, at its middle.
   double angle_deg() const;
+  /// Of its curvature at its middle [pixels]; infinite for a straight line.
+  double radius_px() const;
 };
 
 /// The coordinates of many places about a line.

@@ -44,6 +44,8 @@ double knot_sinc(double x) {
 /// One choice of the smoothing.
 struct Solved {
   double criterion = HUGE_VAL;  ///< −2 log of the restricted likelihood, but for a constant
+  double of_rest = 0;           ///< what the rest of the samples adds to it
+  double smoothing = 0;
   BorderedCholesky factor;
   Eigen::VectorXd solution;
 };
@@ -51,8 +53,9 @@ struct Solved {
 }  // namespace
 
 template <int fixed>
-void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand& normal,
-                                 Eigen::VectorXd& right) {
+void EdgeSpreadModel::add_points(std::span<const EdgePoint> points) {
+  BorderedBand& normal = padded_normal_;
+  Eigen::VectorXd& right = padded_right_;
   double corner[fixed][fixed] = {}, corner_right[fixed] = {};
   const double cells = basis_.splines + support - 1;
   for (const EdgePoint& point : points) {
@@ -114,18 +117,14 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
              options.light_order, options.prior.shapes ? EdgeShapes::count - 1 : 0} {
   options_.core_px = basis_.core_px();
   rows_.reserve(points.size());
-  BorderedBand normal(padded(), basis_.fixed());
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(normal.size());
+  padded_normal_ = BorderedBand(padded(), basis_.fixed());
+  padded_right_ = Eigen::VectorXd::Zero(padded_normal_.size());
   if (options_.light_order == 2)
-    add_points<closed_forms + EdgeSpreadBasis::light_terms[2]>(points, normal, right);
+    add_points<closed_forms + EdgeSpreadBasis::light_terms[2]>(points);
   else if (options_.light_order == 1)
-    add_points<closed_forms + EdgeSpreadBasis::light_terms[1]>(points, normal, right);
+    add_points<closed_forms + EdgeSpreadBasis::light_terms[1]>(points);
   else
-    add_points<closed_forms>(points, normal, right);
-  data_normal_ = trimmed(normal);
-  right_ = Eigen::VectorXd::Zero(basis_.size());
-  right_.head(basis_.splines) = right.segment(margin, basis_.splines);
-  for (int r = 0; r < basis_.fixed(); ++r) right_[basis_.place(r)] = right[padded() + r];
+    add_points<closed_forms>(points);
   fit(points);
 }
 
@@ -133,8 +132,15 @@ void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> 
   if (order >= options_.light_order) return;
   const int before = basis_.lights();
   options_.light_order = basis_.light_order = order;
-  data_normal_.drop_border(before - basis_.lights());
-  right_.conservativeResize(basis_.size());
+  padded_normal_.drop_border(before - basis_.lights());
+  padded_right_.conservativeResize(padded_normal_.size());
+  fit(points);
+}
+
+void EdgeSpreadModel::take_prior(const EdgePriorOptions& prior, std::span<const EdgePoint> points) {
+  options_.prior = prior;
+  options_.smoothing = -1;
+  basis_.shapes = prior.shapes ? EdgeShapes::count - 1 : 0;
   fit(points);
 }
 
@@ -144,6 +150,10 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     low = std::min(low, point.value), high = std::max(high, point.value);
     square += point.value * point.value;
   }
+  data_normal_ = trimmed(padded_normal_);
+  right_ = Eigen::VectorXd::Zero(basis_.size());
+  right_.head(basis_.splines) = padded_right_.segment(margin, basis_.splines);
+  for (int r = 0; r < basis_.fixed(); ++r) right_[basis_.place(r)] = padded_right_[padded() + r];
   const EdgePrior prior(options_.prior, basis_, high - low);
   BorderedBand normal = data_normal_;
   prior.add_first_part(normal);
@@ -154,24 +164,35 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   const auto solve = [&](double smoothing) {
     BorderedBand whole = normal;
     whole.add(smoothing * unit, rough);
-    Solved solved{HUGE_VAL, BorderedCholesky(std::move(whole)), {}};
+    Solved solved;
+    solved.factor = BorderedCholesky(std::move(whole));
     if (!solved.factor.good() || !right_.allFinite())
       throw InputError("the pixels do not determine the edge's profile; a larger ROI is needed");
     solved.solution = solved.factor.solve(right_);
     const double rest = std::max(square - right_.dot(solved.solution), 1e-14 * square);
-    solved.criterion =
-        (count - unsettled) * std::log(rest) + solved.factor.log_determinant() - rank * std::log(smoothing);
+    solved.of_rest = (count - unsettled) * std::log(rest);
+    solved.criterion = solved.of_rest + solved.factor.log_determinant() - rank * std::log(smoothing);
+    solved.smoothing = smoothing;
     return solved;
   };
   Solved best;
   if (options_.smoothing < 0) {
     const EdgePrior::Weights weights = prior.weights(unit);
     constexpr double factor = 4;
+    std::vector<double> choices;
     for (double smoothing = weights.least; smoothing < factor * weights.most; smoothing *= factor)
-      if (Solved solved = solve(std::min(smoothing, weights.most)); solved.criterion < best.criterion) {
-        best = std::move(solved);
-        options_.smoothing = std::min(smoothing, weights.most);
-      }
+      choices.push_back(std::min(smoothing, weights.most));
+    // With less smoothing the rest becomes smaller and the other terms larger. Those of a choice and the
+    // smallest rest are therefore below what all choices of less smoothing come to.
+    best = solve(choices.front());
+    const double least_of_rest = best.of_rest;
+    for (std::size_t i = choices.size() - 1; i > 0; --i) {
+      Solved solved = solve(choices[i]);
+      const double bound = least_of_rest + solved.criterion - solved.of_rest;
+      if (solved.criterion < best.criterion) best = std::move(solved);
+      if (bound > best.criterion) break;
+    }
+    options_.smoothing = best.smoothing;
   } else {
     options_.smoothing = std::max(options_.smoothing, EdgePrior::least_weight);
     best = solve(options_.smoothing);
@@ -184,13 +205,12 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   criterion_ = best.criterion + prior.log_spread_of_shapes();
   dark_ = coefficients_[basis_.dark()];
   step_ = coefficients_[basis_.step()];
-  evaluate_points(points);
 }
 
-void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
-  fitted_.clear(), variation_.clear();
-  fitted_.reserve(points.size());
-  variation_.reserve(points.size());
+void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points, std::vector<ValueAndSlope>& fitted,
+                                      std::vector<double>& variations) const {
+  fitted.resize(points.size());
+  variations.resize(points.size());
   Eigen::VectorXd c = Eigen::VectorXd::Zero(padded() + basis_.fixed());
   c.segment(margin, basis_.splines) = coefficients_.head(basis_.splines);
   const double* const closed = coefficients_.data() + basis_.splines;
@@ -213,8 +233,8 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
       }
       at.slope += slope * per_px;
     }
-    fitted_.push_back(at);
-    variation_.push_back(variation);
+    fitted[i] = at;
+    variations[i] = variation;
   }
 }
 
@@ -386,6 +406,7 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
         for (int r = 0; r < fixed; ++r) entry(model.basis_.place(r), row.fixed[r]);
       },
       rounding_);
+  rounding_ = Eigen::MatrixXd(rounding_.selfadjointView<Eigen::Lower>());
 }
 
 void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, std::complex<double> value, double* gradient,
@@ -420,19 +441,20 @@ std::vector<double> EdgeSpreadModel::Deviation::of_moduli(
       gradient_of_modulus(frequencies_cpp[first + k], transforms[first + k], x.data() + k,
                           BorderedBand::lanes);
     model_.factor_.solve_in_place(x);
-    std::array<double, lanes> variance = spread_.quadratic(x);
-    for (std::size_t k = 0; k < count; ++k) {
-      variance[k] += quadratic_of_rounding(x, static_cast<int>(k));
-      deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
-    }
+    const std::array<double, lanes> variance = variances(x);
+    for (std::size_t k = 0; k < count; ++k) deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
   }
   return deviations;
 }
 
-double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Block& x, int lane) const {
-  if (rounding_.size() == 0) return 0;
-  const Eigen::VectorXd one = x.col(lane);
-  return one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
+std::array<double, BorderedBand::lanes> EdgeSpreadModel::Deviation::variances(
+    const BorderedBand::Block& x) const {
+  std::array<double, BorderedBand::lanes> result = spread_.quadratic(x);
+  if (rounding_.size() == 0) return result;
+  const BorderedBand::Block of_rounding = rounding_ * x;
+  Eigen::Map<Eigen::Array<double, 1, BorderedBand::lanes>>(result.data()) +=
+      (x.array() * of_rounding.array()).colwise().sum();
+  return result;
 }
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
@@ -443,8 +465,7 @@ std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) x.col(3 + k) = x.col(pairs[k][0]) + x.col(pairs[k][1]);
-  std::array<double, BorderedBand::lanes> squares = spread_.quadratic(x);
-  for (int k = 0; k < 6; ++k) squares[static_cast<std::size_t>(k)] += quadratic_of_rounding(x, k);
+  const std::array<double, BorderedBand::lanes> squares = variances(x);
   std::array<double, 3> result{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double a = squares[static_cast<std::size_t>(pairs[k][0])],

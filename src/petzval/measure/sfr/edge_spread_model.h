@@ -55,6 +55,8 @@ class EdgeSpreadModel {
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
   /// The same, of the same points, with light of a lower order.
   void take_light_to_order(int order, std::span<const EdgePoint> points);
+  /// The same, of the same points, with another prior, whose weight the evidence chooses.
+  void take_prior(const EdgePriorOptions& prior, std::span<const EdgePoint> points);
 
   /// The profile at a distance, in the middle of the edge and without what varies.
   double value(double distance) const { return evaluate(distance).value; }
@@ -63,10 +65,10 @@ class EdgeSpreadModel {
     double value = 0, slope = 0;
   };
   ValueAndSlope evaluate(double distance) const;
-  /// At each of the points that the model was made from: the profile and its slope, and what light that
-  /// varies, and a target that is no half-plane, add there.
-  const std::vector<ValueAndSlope>& fitted() const { return fitted_; }
-  const std::vector<double>& variation() const { return variation_; }
+  /// At each of the points, which are those that the model was made from: the profile and its slope, and what
+  /// light that varies, and a target that is no half-plane, add there.
+  void evaluate_points(std::span<const EdgePoint> points, std::vector<ValueAndSlope>& fitted,
+                       std::vector<double>& variations) const;
   /// The terms of the highest order of light that varies: over their standard deviations, and the largest
   /// share of the step that they make within `reach_px` of the edge.
   struct Variation {
@@ -122,14 +124,15 @@ class EdgeSpreadModel {
     std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
 
    private:
-    double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
+    /// xᵀ (spread + rounding) x of each vector.
+    std::array<double, BorderedBand::lanes> variances(const BorderedBand::Block& x) const;
     /// d|transform|/d(right side), into every `stride`-th place.
     void gradient_of_modulus(double frequency_cpp, std::complex<double> transform, double* gradient,
                              int stride) const;
 
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations
-    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it, its lower half; empty without
+    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it; empty without
   };
 
  private:
@@ -145,19 +148,19 @@ class EdgeSpreadModel {
   static constexpr int margin = support - 1;
   int padded() const { return basis_.splines + 2 * margin; }
   template <int fixed>
-  void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);
+  void add_points(std::span<const EdgePoint> points);
   BorderedBand trimmed(const BorderedBand& padded) const;
   void fit(std::span<const EdgePoint> points);
-  void evaluate_points(std::span<const EdgePoint> points);
 
   EdgeSpreadOptions options_;
   EdgeSpreadBasis basis_;
   double dark_ = 0, step_ = 1, criterion_ = 0;
   Eigen::VectorXd coefficients_;
   std::vector<Row> rows_;  ///< of the points
-  std::vector<ValueAndSlope> fitted_;
-  std::vector<double> variation_;
-  BorderedBand data_normal_;  ///< of the data alone
+  /// Normal equations of the data alone, with the splines that have no unknown and without shapes.
+  BorderedBand padded_normal_;
+  Eigen::VectorXd padded_right_;
+  BorderedBand data_normal_;  ///< of the unknowns
   Eigen::VectorXd right_;     ///< side of the normal equations
   BorderedBand priors_;       ///< of the priors and the roughness
   BorderedCholesky factor_;   ///< of the whole normal matrix

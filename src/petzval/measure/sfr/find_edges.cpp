@@ -144,12 +144,12 @@ EdgeLine FoundEdge::line() const {
 
 FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr std::size_t least_points = 24;
-  constexpr double tolerance_px = 0.75, least_reach_px = 4;
+  constexpr double least_reach_px = 4;
   const Plane drawn = quiet(plane);
   const double noise = noise_share(plane);
   std::vector<Outline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
-    std::vector<ContourPoint> corners = straightened(contour, tolerance_px);
+    std::vector<ContourPoint> corners = straightened(contour, options.tolerance_px);
     if (corners.size() >= 2) outlines.push_back({std::move(corners), contour.closed});
   }
   const SideGrid grid(outlines);

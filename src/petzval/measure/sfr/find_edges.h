@@ -32,11 +32,15 @@ struct FoundEdges {
 struct EdgeSearchOptions {
   double least_length_px = 30;
   double greatest_reach_px = 80;  ///< how far from an edge samples are taken
+  double tolerance_px = 0.75;     ///< within which an outline is straight
+  /// Of an arc that has a chord of the least length within the tolerance: without noise, those of less are no
+  /// edges.
+  constexpr double least_radius_px() const { return least_length_px * least_length_px / (8 * tolerance_px); }
 };
 
 /// Edges of rectangles, checkerboards, stars and anything else that stands out by its brightness: contours at
 /// the level halfway between dark and bright of the picture, smoothed as its noise asks for, divided into
-/// straight lines (Ramer 1972; Douglas & Peucker 1973, within 0.75 pixels). Lines that meet at less than 8°
+/// straight lines (Ramer 1972; Douglas & Peucker 1973). Lines that meet at less than 8°
 /// are one edge. Edges of blurred targets have rounded corners; what is rounded is left out. The time grows
 /// with the pixels and the sides of the outlines. \throws InputError if there is no edge.
 FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options = {});

@@ -27,6 +27,8 @@ struct SfrOptions {
   std::optional<double> clip_low, clip_high;
   /// The light of each code value, rising, where values have been rounded to them; empty: they have not.
   std::vector<double> code_levels;
+  /// Edges that are plainly bent to a smaller radius are refused; 0: none are.
+  double least_radius_px = 0;
   /// Where the edge is known to run already; its direction points from dark to bright.
   std::optional<EdgeLine> start;
 };

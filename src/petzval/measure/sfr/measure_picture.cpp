@@ -186,6 +186,7 @@ class Measurement {
     SfrOptions options = options_;
     if (edge != nullptr) {
       options.start = edge->line();
+      if (sampled) options.least_radius_px = EdgeSearchOptions().least_radius_px();
       options.missing_target =
           sampled ? MissingTarget::where_sampled(*edge) : MissingTarget::everywhere(*edge);
     }

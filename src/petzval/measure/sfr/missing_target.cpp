@@ -22,8 +22,7 @@ MissingTarget::MissingTarget(const FoundEdge& edge, bool sampled) {
   // ∬ r⁻³ dA = −∮ (x·n)/r³ ds, n outward: the outlines of what is bright, the other way round …
   std::vector<Side> far;
   const auto add = [](std::vector<Side>& sides, const ContourPoint& from, const ContourPoint& to) {
-    const double ex = to.x - from.x, ey = to.y - from.y, length = std::hypot(ex, ey);
-    if (length > 0) sides.push_back({from, ex / length, ey / length, length});
+    sides.push_back({from, {to.x - from.x, to.y - from.y}});
   };
   EdgeLine line = edge.line();
   const double nx = std::cos(line.normal_rad), ny = std::sin(line.normal_rad), ex = ny, ey = -nx;
@@ -47,18 +46,19 @@ MissingTarget::MissingTarget(const FoundEdge& edge, bool sampled) {
 }
 
 double MissingTarget::flux(const std::vector<Side>& sides, double x, double y) {
-  // ∫ (x·n)/r³ ds along a straight line, n to the left of its way in the picture (the dark side).
+  // ∫ (x·n)/r³ ds along a straight line, n to the left of its way in the picture (the dark side), by the
+  // vectors a and b to its ends: (a × b) (|a| + |b|) / (|a||b| (|a||b| + a·b)), as in the law of Biot &
+  // Savart. Between its ends the same with (|a||b|)² − (a·b)² = (a × b)², so that nothing cancels.
+  constexpr double on_it = 1e-9;
   double sum = 0;
   for (const Side& side : sides) {
     const double ax = side.from.x - x, ay = side.from.y - y;
-    const double d = ax * side.uy - ay * side.ux;
-    const double s1 = ax * side.ux + ay * side.uy, s2 = s1 + side.length;
-    // s/(d ρ) = sign(s) (1/d − d/(ρ(ρ + |s|))), so that nothing cancels on the line's extension.
-    const double rho1 = std::sqrt(d * d + s1 * s1), rho2 = std::sqrt(d * d + s2 * s2);
-    const double rest1 = d / (rho1 * (rho1 + std::abs(s1)) + 1e-300),
-                 rest2 = d / (rho2 * (rho2 + std::abs(s2)) + 1e-300);
-    sum += (s1 < 0 ? -rest1 : rest1) - (s2 < 0 ? -rest2 : rest2);
-    if ((s1 < 0) != (s2 < 0) && std::abs(d) > 1e-9) sum += 2 / d;
+    const double bx = ax + side.way.x, by = ay + side.way.y;
+    const double a2 = ax * ax + ay * ay, b2 = bx * bx + by * by, ab = std::sqrt(a2 * b2);
+    const double cross = ax * side.way.y - ay * side.way.x, along = ax * bx + ay * by;
+    if (std::abs(cross) < on_it) continue;
+    const double ends = std::sqrt(a2 + b2 + 2 * ab);  // |a| + |b|
+    sum += ends / ab * (along > 0 ? cross / (ab + along) : (ab - along) / cross);
   }
   return sum;
 }

@@ -23,8 +23,7 @@ class MissingTarget {
  private:
   MissingTarget(const FoundEdge& edge, bool sampled);
   struct Side {
-    ContourPoint from;
-    double ux, uy, length;
+    ContourPoint from, way;
   };
   static double flux(const std::vector<Side>& sides, double x, double y);
   std::vector<Side> near_;
