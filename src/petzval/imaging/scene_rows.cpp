@@ -122,14 +122,17 @@ double SceneRows::cell(std::span<const float> samples, double x_mm, double y_mm)
 
 float SceneRows::cell_in_row(std::size_t row, std::size_t column, const RowView& cells,
                              std::span<const float> samples) const {
-  const float width = cells.width[column], height = cells.height[column];
-  const bool known = !panorama_ && column >= cells.dark && column < cells.width.size() - cells.dark;
-  if (!known || !(std::min(width, height) > 0) || !(std::max(width, height) <= 1))
-    return static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), grid_.y_mm(double(row) + 0.5)));
-  return static_cast<float>(
-      double(cells.g_source_sr[column]) *
-      mean(samples, {scene_.columns() / 2.0 + cells.right[column], scene_.rows() / 2.0 + cells.down[column],
-                     double(width), double(height)}));
+  const auto anywhere = [&] {
+    return cell(samples, grid_.x_mm(double(column) + 0.5), grid_.y_mm(double(row) + 0.5));
+  };
+  if (panorama_ || column < cells.dark || column >= cells.width.size() - cells.dark)
+    return static_cast<float>(anywhere());
+  const auto width = double(cells.width[column]), height = double(cells.height[column]);
+  if (!(std::min(width, height) > 0) || !(std::max(width, height) <= 1))
+    return static_cast<float>(anywhere());
+  const Rectangle seen{scene_.columns() / 2.0 + cells.right[column], scene_.rows() / 2.0 + cells.down[column],
+                       width, height};
+  return static_cast<float>(double(cells.g_source_sr[column]) * mean(samples, seen));
 }
 
 void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
