@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 #include <petzval/colour/illuminants.h>
 
+#include "command.h"
+
 namespace petzval::app {
 
 void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
@@ -24,6 +26,7 @@ void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
       ->capture_default_str();
   constexpr double most_ev = 40;  // as data sets have it
   command.add_option("--exposure-compensation", given.compensation_ev, "More light by this many stops [EV]")
+      ->check(finite_number())
       ->check(CLI::Range(-most_ev, most_ev))
       ->capture_default_str();
   if (!after_light)
