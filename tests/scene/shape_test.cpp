@@ -171,6 +171,31 @@ TEST(ShapesInPicture, CountAnOverlapOfAShapeWithItselfOnce) {
   }
 }
 
+// Rounding along an edge must not lead beyond its ends, where there is no room for it. Corners on the grid of
+// pixels are where it would.
+TEST(ShapesInPicture, StayWithinTheirCorners) {
+  constexpr int side = 40;
+  std::mt19937_64 random(3);
+  std::uniform_int_distribution<int> on_grid(0, side);
+  std::uniform_real_distribution<double> anywhere(0, side);
+  for (int i = 0; i < 20000; ++i) {
+    std::array<Point, 3> corners;
+    for (Point& corner : corners) corner = {double(on_grid(random)), anywhere(random)};
+    Shape triangle;
+    triangle.add_polygon(corners);
+    const ShapesInPicture::Valued one{&triangle, 2};
+    const ShapesInPicture in_picture(std::span(&one, 1), side, side);
+    const int row = static_cast<int>(std::min(corners[1].y, side - 1.0));
+    std::vector<double> coverage(side), light(side);
+    const auto [from, end] = in_picture.coverage(row, coverage, light);
+    const std::vector<double> alone = row_of(triangle, row, side);
+    for (std::size_t x = 0; x < side; ++x) {
+      ASSERT_NEAR(x < from || x >= end ? 0 : coverage[x], alone[x], rounding) << i << " " << x;
+      ASSERT_NEAR(light[x], 2 * coverage[x], rounding) << i << " " << x;
+    }
+  }
+}
+
 TEST(Lettering, StaysInItsBox) {
   Shape shape;
   const char* text = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-/";

@@ -27,8 +27,10 @@ double twice_signed_area(std::span<const Point> corners) {
   return sum;
 }
 
+/// Between the ends, whatever the rounding: what an edge adds to a row lies where its ends say.
 double x_at(Point a, Point b, double y) {
-  return a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y);
+  const auto [least, most] = std::minmax(a.x, b.x);
+  return std::clamp(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), least, most);
 }
 
 /// Adds what lies to the right of a piece of an edge within one row, as differences from pixel to pixel. The
