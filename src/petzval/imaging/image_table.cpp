@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstddef>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 
