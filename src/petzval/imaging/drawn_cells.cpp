@@ -34,8 +34,11 @@ class Layout {
 
   /// Adds the image of an edge to a shape. False where there is none.
   bool add(const Shape::Edge& edge, Shape& shape) {
-    const std::optional<Point> from = cell_of(edge.from), to = cell_of(edge.to);
-    return from && to && add_between(edge, *from, *to, 0, shape);
+    // Most edges begin where the last one ended.
+    const std::optional<Point> from = end_ && edge.from == end_sample_ ? end_ : cell_of(edge.from);
+    end_sample_ = edge.to;
+    end_ = cell_of(edge.to);
+    return from && end_ && add_between(edge, *from, *end_, 0, shape);
   }
 
  private:
@@ -65,6 +68,8 @@ class Layout {
   const SceneLook& look_;
   const SensorGeometry& grid_;
   ImagePlace last_{};
+  Point end_sample_{};
+  std::optional<Point> end_{};
 };
 
 }  // namespace
@@ -93,9 +98,9 @@ void DrawnCells::cover(std::size_t row, Row& cells) const {
   cells.covered.resize(columns_);
   cells.radiance.resize(columns_);
   const auto [from, end] = figures_.coverage(static_cast<int>(row), cells.covered, cells.radiance);
-  for (std::vector<double>* values : {&cells.covered, &cells.radiance}) {
-    std::fill_n(values->begin(), from, 0.0);
-    std::fill(values->begin() + std::ptrdiff_t(end), values->end(), 0.0);
+  for (std::vector<float>* values : {&cells.covered, &cells.radiance}) {
+    std::fill_n(values->begin(), from, 0.0F);
+    std::fill(values->begin() + std::ptrdiff_t(end), values->end(), 0.0F);
   }
 }
 

@@ -24,7 +24,7 @@ class DrawnCells {
 
   /// What the figures cover of the cells of a row, and with what light. From any thread.
   struct Row {
-    std::vector<double> covered, radiance;
+    std::vector<float> covered, radiance;
   };
   void cover(std::size_t row, Row& cells) const;
 

@@ -42,14 +42,26 @@ HeightLook::HeightLook(const LightProfile& lens, std::optional<double> object_to
   if (std::ranges::adjacent_find(radii_, std::greater_equal<>()) != radii_.end()) radii_.clear();
 }
 
-std::optional<ImagePlace> HeightLook::image_of(double column, double row, ImagePlace) const {
+std::size_t HeightLook::step_before(double radius, double near_square) const {
+  // The ratio near by says about where; from there it is a few steps at most, or far.
+  const double ratio = steps_[static_cast<std::size_t>(near_square * steps_per_square_)].samples_per_mm;
+  const double height_mm = radius / ratio;
+  const double guess = std::min(height_mm * height_mm, last_height_squared_) * steps_per_square_;
+  auto k = std::min(static_cast<std::size_t>(guess), radii_.size() - 2);
+  while (radii_[k] > radius) --k;
+  while (radii_[k + 1] <= radius) ++k;
+  return k;
+}
+
+std::optional<ImagePlace> HeightLook::image_of(double column, double row, ImagePlace near) const {
   if (radii_.empty()) return std::nullopt;
-  const double right = column - middle_column_, down = row - middle_row_, radius = std::hypot(right, down);
+  const double right = column - middle_column_, down = row - middle_row_;
+  const double radius = std::sqrt(right * right + down * down);
   if (radius == 0) return ImagePlace{};
-  const auto above = std::upper_bound(radii_.begin(), radii_.end(), radius);
   double height_mm = radius / steps_.back().samples_per_mm;  // beyond the last height, as at it
-  if (above != radii_.end()) {
-    const auto k = static_cast<std::size_t>(above - radii_.begin()) - 1;
+  if (radius < radii_.back()) {
+    const double near_square = near.x_mm * near.x_mm + near.y_mm * near.y_mm;
+    const std::size_t k = step_before(radius, std::min(near_square, last_height_squared_));
     const double from = double(k) / steps_per_square_, to = double(k + 1) / steps_per_square_;
     // ρ = ratio(r'²) r', by Newton's method from the straight line between the steps.
     height_mm = std::lerp(std::sqrt(from), std::sqrt(to), (radius - radii_[k]) / (radii_[k + 1] - radii_[k]));

@@ -63,6 +63,8 @@ class HeightLook : public SceneLook {
     }
   };
   Surroundings around(double x_mm, double y_mm) const;
+  /// The step at or before a radius ρ that is less than the last. \param near_square  r'² not far from it.
+  std::size_t step_before(double radius, double near_square) const;
 
   double middle_column_, middle_row_;
   double last_height_mm_, last_height_squared_, steps_per_square_;

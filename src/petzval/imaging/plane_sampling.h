@@ -51,7 +51,7 @@ std::size_t turn_row(const PlaneTurn& turn, const RowView& straight, RowView& tu
 struct PlaneView {
   const float* radiance;
   double columns, rows;
-  double room;  ///< from an edge of the scene, where the neighbours of a place are sure to exist
+  bool dark_around;  ///< beyond the scene; else its nearest sample is seen there
 };
 
 /// How three neighbouring samples share in the mean over a stretch of the straight lines between them.
@@ -74,14 +74,17 @@ struct LinearMean {
   }
 };
 
-/// Mean radiance × g_source of the cells [from, to) of a row for as long as they see the inside of the scene,
-/// no more than a sample of it along either side, and light from the lens. Between sample centres radiance is
-/// bilinear, and the mean is exact, so that the light of a sample is the same wherever it falls on the cells.
-/// SIMD: places in double, light in float; scalar code with the same result to rounding is SceneRows's.
-/// \param down  1, or −1 for the row on the other side of the axis.
+/// Mean radiance × g_source of the cells [from, to) of a row for as long as they see no more than a sample of
+/// the scene along either side, and light from the lens. Between sample centres radiance is bilinear, and the
+/// mean is exact, so that the light of a sample is the same wherever it falls on the cells. SIMD: places in
+/// double, light in float; scalar code with the same result to rounding is SceneRows's.
 /// \return the first cell that is not done.
-std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,
-                       std::size_t to, float* irradiance);
+std::size_t sample_row(const PlaneView& view, const RowView& cells, std::size_t from, std::size_t to,
+                       float* irradiance);
+
+/// The first of the cells [from, to) of a row that does not see the inside of the scene wholly, or that is
+/// not known; `to` if there is none. SIMD.
+std::size_t first_outside(const PlaneView& view, const RowView& cells, std::size_t from, std::size_t to);
 
 /// Cells done at a time.
 std::size_t sampled_at_once();

@@ -135,6 +135,10 @@ float SceneRows::cell_in_row(std::size_t row, std::size_t column, const RowView&
   return static_cast<float>(double(cells.g_source_sr[column]) * mean(samples, seen));
 }
 
+PlaneView SceneRows::view_of(std::span<const float> samples) const {
+  return {samples.data(), double(scene_.columns()), double(scene_.rows()), surround_ == Surround::zero};
+}
+
 void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
                               std::size_t from, std::size_t to, float* irradiance) const {
   if (const std::optional<float> value = flat_value(cells, samples, from, to)) {
@@ -142,11 +146,10 @@ void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<c
       irradiance[column] = *value * cells.g_source_sr[column];
     return;
   }
-  // From a cell's middle to the farthest sample that it needs, and one more for rounding.
-  const PlaneView view{samples.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
+  const PlaneView view = view_of(samples);
   const std::size_t at_once = sampled_at_once();
   for (std::size_t column = from; column < to;) {
-    if (!panorama_) column = sample_row(view, cells, 1, column, to, irradiance);
+    if (!panorama_) column = sample_row(view, cells, column, to, irradiance);
     const std::size_t end = panorama_ ? to : std::min(to, column + at_once);
     for (; column < end; ++column) irradiance[column] = cell_in_row(row, column, cells, samples);
   }
@@ -155,21 +158,26 @@ void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<c
 void SceneRows::write_drawing(std::size_t row, const RowView& cells, const DrawnCells::Row& drawn,
                               std::size_t from, std::size_t to, float* irradiance) const {
   const SceneDrawing& drawing = *scene_.drawing();
-  const auto ground = double(drawing.ground[band_]);
-  const auto is_bare = [](double covered) { return covered < 1; };
-  if (drawing.texture && std::any_of(&drawn.covered[from], &drawn.covered[to - 1] + 1, is_bare)) {
+  const float ground = drawing.ground[band_];
+  const float *covered = drawn.covered.data(), *radiance = drawn.radiance.data(),
+              *g_source_sr = cells.g_source_sr.data();
+  const auto is_bare = [](float share) { return share < 1; };
+  if (drawing.texture && std::any_of(covered + from, covered + to, is_bare)) {
     write_samples(row, cells, *drawing.texture, from, to, irradiance);
+    for (std::size_t column = from; column < to; ++column)
+      irradiance[column] =
+          (1 - covered[column]) * ground * irradiance[column] + radiance[column] * g_source_sr[column];
   } else {
-    std::copy_n(&cells.g_source_sr[from], to - from, irradiance + from);
+    for (std::size_t column = from; column < to; ++column)
+      irradiance[column] = ((1 - covered[column]) * ground + radiance[column]) * g_source_sr[column];
   }
-  for (std::size_t column = from; column < to; ++column)
-    irradiance[column] =
-        static_cast<float>((1 - drawn.covered[column]) * ground * double(irradiance[column]) +
-                           drawn.radiance[column] * double(cells.g_source_sr[column]));
-  if (are_inside(cells, from, to)) return;
-  for (std::size_t column = from; column < to; ++column)
-    if (!are_inside(cells, column, column + 1))
-      irradiance[column] = cell_in_row(row, column, cells, radiance_);
+  const PlaneView view = view_of(radiance_);
+  for (std::size_t column = first_outside(view, cells, from, to); column < to;) {
+    std::size_t end = column + 1;
+    while (end < to && first_outside(view, cells, end, end + 1) == end) ++end;
+    write_samples(row, cells, radiance_, column, end, irradiance);
+    column = first_outside(view, cells, end, to);
+  }
 }
 
 std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const float> samples,
@@ -193,19 +201,6 @@ std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const
   const double middle = scene_.columns() / 2.0, centre = scene_.rows() / 2.0;
   return flat_->value_in(middle + left - around, middle + right + around, centre + top - around,
                          centre + bottom + around, surround_ != Surround::zero);
-}
-
-bool SceneRows::are_inside(const RowView& cells, std::size_t from, std::size_t to) const {
-  if (from < cells.dark || to > cells.g_source_sr.size() - cells.dark) return false;
-  const double half_columns = scene_.columns() / 2.0, half_rows = scene_.rows() / 2.0;
-  const auto outside = [from, to](const std::vector<double>& from_middle, const std::vector<float>& sides,
-                                  double half) {
-    std::size_t count = 0;
-    for (std::size_t column = from; column < to; ++column)
-      count += std::abs(from_middle[column]) + double(sides[column]) / 2 < half ? 0 : 1;
-    return count;
-  };
-  return outside(cells.right, cells.width, half_columns) + outside(cells.down, cells.height, half_rows) == 0;
 }
 
 void SceneRows::look(std::size_t row, RowView& straight) const {

@@ -57,6 +57,7 @@ class SceneRows {
   struct Rectangle {
     double column, row, width, height;
   };
+  PlaneView view_of(std::span<const float> samples) const;
   double mean(std::span<const float> samples, const Rectangle& seen) const;
   /// Mean of samples × g_source over a cell.
   double cell(std::span<const float> samples, double x_mm, double y_mm) const;
@@ -71,8 +72,6 @@ class SceneRows {
   /// The radiance that the cells [from, to) of a row see, if all of them see the same.
   std::optional<float> flat_value(const RowView& cells, std::span<const float> samples, std::size_t from,
                                   std::size_t to) const;
-  /// Whether the cells [from, to) of a row see the inside of the scene.
-  bool are_inside(const RowView& cells, std::size_t from, std::size_t to) const;
 
   const Scene& scene_;
   std::size_t band_;

@@ -27,11 +27,21 @@ double twice_signed_area(std::span<const Point> corners) {
   return sum;
 }
 
-/// Between the ends, whatever the rounding: what an edge adds to a row lies where its ends say.
-double x_at(Point a, Point b, double y) {
-  const auto [least, most] = std::minmax(a.x, b.x);
-  return std::clamp(a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y), least, most);
-}
+/// Where an edge that is not level is at a height. Between its ends, whatever the rounding: what it adds to a
+/// row lies where they say.
+class Slope {
+ public:
+  explicit Slope(const Shape::Edge& edge)
+      : from_(edge.from),
+        x_per_y_((edge.to.x - edge.from.x) / (edge.to.y - edge.from.y)),
+        least_(std::min(edge.from.x, edge.to.x)),
+        most_(std::max(edge.from.x, edge.to.x)) {}
+  double x_at(double y) const { return std::clamp(from_.x + x_per_y_ * (y - from_.y), least_, most_); }
+
+ private:
+  Point from_;
+  double x_per_y_, least_, most_;
+};
 
 /// Adds what lies to the right of a piece of an edge within one row, as differences from pixel to pixel. The
 /// piece spans `height` of the row (signed) and goes from x = from to x = to, both within the row's pixels.
@@ -41,13 +51,20 @@ template <typename Add>
 void add_piece(std::size_t last, double from, double to, double height, const Add& add) {
   if (from > to) std::swap(from, to);
   const std::size_t first_pixel = std::min(static_cast<std::size_t>(from), last);
+  if (const double right = static_cast<double>(first_pixel) + 1;
+      to <= right) {  // within one pixel, as most are
+    const double area = height * (right - (from + to) / 2);
+    add(first_pixel, area);
+    if (first_pixel < last) add(first_pixel + 1, height - area);
+    return;
+  }
+  const double per_length = 1 / (to - from);
   double covered_before = 0;  // running sum that belongs in the pixels up to here
   for (std::size_t pixel = first_pixel; pixel <= last; ++pixel) {
     const double left = static_cast<double>(pixel), right = left + 1;
     // The part of the piece within this pixel, and the area to the right of it.
     const double begin = std::clamp(from, left, right), end = std::clamp(to, left, right);
-    const double part = to > from ? (end - begin) / (to - from) : 1.0;
-    const double passed = to > from ? (begin - from) / (to - from) : 0.0;
+    const double part = (end - begin) * per_length, passed = (begin - from) * per_length;
     const double area = height * (passed + part * (right - (begin + end) / 2));
     add(pixel, area - covered_before);
     covered_before = area;
@@ -110,11 +127,12 @@ void add_edge_in_row(const Shape::Edge& edge, int row, std::size_t columns, cons
         edge.from.y + (edge.to.y - edge.from.y) * (border - edge.from.x) / (edge.to.x - edge.from.x);
     if (y > low && y < high) cuts[static_cast<std::size_t>(count++)] = y;
   }
-  std::sort(cuts.begin(), cuts.end());
+  if (count > 1) std::sort(cuts.begin(), cuts.end());
+  const Slope slope(edge);
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     if (!(cuts[i] < cuts[i + 1])) continue;
-    const double from = std::clamp(x_at(edge.from, edge.to, cuts[i]), 0.0, width);
-    const double to = std::clamp(x_at(edge.from, edge.to, cuts[i + 1]), 0.0, width);
+    const double from = std::clamp(slope.x_at(cuts[i]), 0.0, width);
+    const double to = std::clamp(slope.x_at(cuts[i + 1]), 0.0, width);
     add_piece(columns, from, to, sign * (cuts[i + 1] - cuts[i]), add);
   }
 }
@@ -193,27 +211,47 @@ ShapesInPicture::Reach ShapesInPicture::coverage(int row, std::span<double> pixe
   return reach;
 }
 
-ShapesInPicture::Reach ShapesInPicture::coverage(int row, std::span<double> pixels,
-                                                 std::span<double> values) const {
+ShapesInPicture::Reach ShapesInPicture::coverage(int row, std::span<float> pixels,
+                                                 std::span<float> values) const {
   const std::span<const Edge> edges = edges_of(row);
   const Reach reach = reach_of(edges);
   if (reach.from == reach.end) return reach;
   struct Sums {
     double coverage = 0, value = 0;
   };
-  thread_local std::vector<Sums> differences;
-  differences.assign(reach.end - reach.from + beyond, {});
+  // From edge to edge nothing changes: only stretches in which there is one are added up pixel by pixel.
+  constexpr std::size_t stretch = 8;
+  thread_local std::vector<Sums> differences;  // zero but while this runs
+  thread_local std::vector<char> changes;
+  const std::size_t stretches = (reach.end - reach.from + beyond) / stretch + 1;
+  differences.resize(std::max(differences.size(), stretches * stretch));
+  changes.assign(stretches, 0);
   for (const auto& [edge, of_edge] : edges)
     add_edge_in_row(edge, row, columns_, [&, value = of_edge](std::size_t pixel, double by) {
-      differences[pixel - reach.from].coverage += by;
-      differences[pixel - reach.from].value += value * by;
+      Sums& difference = differences[pixel - reach.from];
+      difference.coverage += by;
+      difference.value += value * by;
+      changes[(pixel - reach.from) / stretch] = 1;
     });
   Sums sums;
-  for (std::size_t pixel = reach.from; pixel < reach.end; ++pixel) {
-    sums.coverage += differences[pixel - reach.from].coverage;
-    sums.value += differences[pixel - reach.from].value;
-    pixels[pixel] = sums.coverage < rounding ? 0 : std::min(sums.coverage, 1.0);
-    values[pixel] = sums.coverage < rounding ? 0 : sums.value / std::max(sums.coverage, 1.0);
+  float covered = 0, light = 0;
+  for (std::size_t i = 0; i < stretches; ++i) {
+    const std::size_t from = std::min(reach.from + i * stretch, reach.end),
+                      end = std::min(from + stretch, reach.end);
+    if (changes[i] == 0) {
+      std::fill(&pixels[0] + from, &pixels[0] + end, covered);
+      std::fill(&values[0] + from, &values[0] + end, light);
+      continue;
+    }
+    Sums* const of_stretch = &differences[i * stretch];
+    for (std::size_t pixel = from; pixel < end; ++pixel) {
+      sums.coverage += of_stretch[pixel - from].coverage;
+      sums.value += of_stretch[pixel - from].value;
+      const double scale = sums.coverage < rounding ? 0 : 1 / std::max(sums.coverage, 1.0);
+      pixels[pixel] = covered = static_cast<float>(scale * sums.coverage);
+      values[pixel] = light = static_cast<float>(scale * sums.value);
+    }
+    std::fill_n(of_stretch, stretch, Sums{});
   }
   return reach;
 }

@@ -72,7 +72,7 @@ class ShapesInPicture {
   /// returned are set, all others lie outside the shapes.
   Reach coverage(int row, std::span<double> pixels) const;
   /// The same, and the sum of value × coverage. \param values  as `pixels`.
-  Reach coverage(int row, std::span<double> pixels, std::span<double> values) const;
+  Reach coverage(int row, std::span<float> pixels, std::span<float> values) const;
 
  private:
   struct Edge {
