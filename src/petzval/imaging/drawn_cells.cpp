@@ -46,9 +46,10 @@ class Layout {
     const Point middle{(edge.from.x + edge.to.x) / 2, (edge.from.y + edge.to.y) / 2};
     const std::optional<Point> bent = cell_of(middle);
     if (!bent) return false;
-    const double length = std::hypot(to.x - from.x, to.y - from.y);
-    const double aside = std::hypot(bent->x - (from.x + to.x) / 2, bent->y - (from.y + to.y) / 2);
-    if (depth == deepest || (aside <= bend_cells && (length <= longest_cells || is_away(from, to)))) {
+    const auto within = [](double x, double y, double length) { return x * x + y * y <= length * length; };
+    const bool is_short = within(to.x - from.x, to.y - from.y, longest_cells),
+               is_straight = within(bent->x - (from.x + to.x) / 2, bent->y - (from.y + to.y) / 2, bend_cells);
+    if (depth == deepest || (is_straight && (is_short || is_away(from, to)))) {
       shape.add_edge({from, to});
       return true;
     }

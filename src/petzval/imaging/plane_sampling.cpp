@@ -2,6 +2,7 @@
 #include <petzval/imaging/plane_sampling.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -46,15 +47,36 @@ using Floats = hn::CappedTag<float, 16>;
 using Doubles = hn::Repartition<double, Floats>;
 using HalfFloats = hn::Rebind<float, Doubles>;
 using HalfIntegers = hn::Rebind<std::int32_t, Doubles>;
-using Wide = hn::Rebind<std::int64_t, Doubles>;
 using Integers = hn::Rebind<std::int32_t, Floats>;
 using Vector = hn::Vec<Doubles>;
 
-/// What `steps` hold in `member` at the steps k.
-HWY_ATTR HWY_INLINE Vector gathered(const SceneMapStep* steps, double SceneMapStep::*member,
-                                    hn::Vec<Wide> k) {
-  static_assert(sizeof(SceneMapStep) == 4 * sizeof(double));
-  return hn::GatherIndex(Doubles(), &(steps->*member), hn::ShiftLeft<2>(k));
+/// The steps that some cells of a row lie in, and where in them.
+struct StepsOfCells {
+  static constexpr std::size_t most = 64;  ///< cells
+  alignas(64) std::array<SceneMapStep, most> steps;
+  alignas(64) std::array<double, most> further;  ///< r'² from the step on
+};
+
+HWY_ATTR HWY_INLINE Vector left_of_axis(const CellRow& cells, std::size_t at) {
+  const Doubles d;
+  const Vector column = hn::Add(hn::Iota(d, 0), hn::Set(d, double(at)));
+  return hn::Mul(hn::Sub(hn::Set(d, double(cells.count) / 2 - 0.5), column), hn::Set(d, cells.pitch_mm));
+}
+
+/// Reads steps whole, which takes a fraction of the time of gathering their numbers one by one.
+HWY_ATTR void find_steps(const SceneMapSteps& map, const CellRow& cells, std::size_t first, std::size_t count,
+                         StepsOfCells& found) {
+  const Doubles d;
+  alignas(64) std::array<std::int32_t, StepsOfCells::most> k;
+  const Vector y_squared = hn::Set(d, cells.y_mm * cells.y_mm);
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const Vector x = left_of_axis(cells, first + i);
+    const Vector square = hn::Min(hn::MulAdd(x, x, y_squared), hn::Set(d, map.last_height_squared));
+    const Vector step = hn::Floor(hn::Mul(square, hn::Set(d, map.steps_per_square)));
+    hn::StoreU(hn::DemoteTo(HalfIntegers(), step), HalfIntegers(), &k[i]);
+    hn::StoreU(hn::NegMulAdd(step, hn::Set(d, 1 / map.steps_per_square), square), d, &found.further[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) found.steps[i] = map.steps[k[i]];
 }
 
 /// What the cells [first, end) and their mirror images see. Arrays have room for whole vectors.
@@ -62,19 +84,19 @@ HWY_ATTR void look(const SceneMapSteps& map, const CellRow& cells, std::size_t f
                    RowView& view) {
   const Doubles d;
   const std::size_t lanes = hn::Lanes(d);
+  end = first + (end - first + lanes - 1) / lanes * lanes;
   const auto set = [&](double value) { return hn::Set(d, value); };
-  const Vector y = set(cells.y_mm), middle = set(double(cells.count) / 2 - 0.5);
+  const Vector y = set(cells.y_mm);
+  StepsOfCells found;
   for (std::size_t at = first; at < end; at += lanes) {
-    const Vector column = hn::Add(hn::Iota(d, 0), set(double(at)));
-    const Vector x = hn::Mul(hn::Sub(middle, column), set(cells.pitch_mm));
-    const Vector square = hn::Min(hn::MulAdd(x, x, hn::Mul(y, y)), set(map.last_height_squared));
-    const Vector step = hn::Floor(hn::Mul(square, set(map.steps_per_square)));
-    const Vector further = hn::NegMulAdd(step, set(1 / map.steps_per_square), square);
-    const auto k = hn::PromoteTo(Wide(), hn::DemoteTo(HalfIntegers(), step));
-    const Vector slope = gathered(map.steps, &SceneMapStep::samples_slope, k);
-    const Vector ratio = hn::MulAdd(further, slope, gathered(map.steps, &SceneMapStep::samples_per_mm, k));
-    const Vector g = hn::MulAdd(further, gathered(map.steps, &SceneMapStep::g_source_slope, k),
-                                gathered(map.steps, &SceneMapStep::g_source_sr, k));
+    const std::size_t place = (at - first) % StepsOfCells::most;
+    if (place == 0) find_steps(map, cells, at, std::min(StepsOfCells::most, end - at), found);
+    const Vector x = left_of_axis(cells, at), further = hn::LoadU(d, &found.further[place]);
+    Vector samples_per_mm, g_source_sr, slope, g_slope;
+    static_assert(sizeof(SceneMapStep) == 4 * sizeof(double));
+    hn::LoadInterleaved4(d, &found.steps[place].samples_per_mm, samples_per_mm, g_source_sr, slope, g_slope);
+    const Vector ratio = hn::MulAdd(further, slope, samples_per_mm);
+    const Vector g = hn::MulAdd(further, g_slope, g_source_sr);
     const Vector left = hn::Mul(ratio, x), below = hn::Mul(ratio, y);
     // The samples that a cell spans along an axis: the derivative of ratio × its place.
     const auto spanned = [&](Vector place) {

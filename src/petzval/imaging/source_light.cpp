@@ -29,6 +29,7 @@ class PartRows {
   PartRows(const std::vector<Source>& sources, const SourceFilter& filter, std::size_t cells)
       : sources_(sources),
         filter_(filter),
+        weights_(filter.weights.begin(), filter.weights.end()),
         cells_(cells),
         looks_(filter.weights.size()),
         kept_(sources.size() * filter.weights.size()) {}
@@ -74,17 +75,20 @@ class PartRows {
   }
 
   void filter_along(std::vector<float>& values) const {
-    values.assign(cells_, 0);
+    values.resize(cells_);
     const auto step = static_cast<std::size_t>(filter_.parts);
-    for (std::size_t k = 0; k < filter_.weights.size(); ++k) {
-      const auto weight = static_cast<float>(filter_.weights[k]);
-      const float* parts = part_row_.data() + k;
-      for (std::size_t cell = 0; cell < cells_; ++cell) values[cell] += weight * parts[cell * step];
+    const float* parts = part_row_.data();
+    for (float& value : values) {
+      float sum = 0;
+      for (std::size_t k = 0; k < weights_.size(); ++k) sum += weights_[k] * parts[k];
+      value = sum;
+      parts += step;
     }
   }
 
   const std::vector<Source>& sources_;
   const SourceFilter& filter_;
+  std::vector<float> weights_;
   std::size_t cells_;
   std::vector<Look> looks_;
   std::vector<Kept> kept_;  ///< [source][row, by turns]

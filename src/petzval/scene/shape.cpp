@@ -36,6 +36,7 @@ class Slope {
         x_per_y_((edge.to.x - edge.from.x) / (edge.to.y - edge.from.y)),
         least_(std::min(edge.from.x, edge.to.x)),
         most_(std::max(edge.from.x, edge.to.x)) {}
+  bool is_within(double width) const { return least_ >= 0 && most_ <= width; }
   double x_at(double y) const { return std::clamp(from_.x + x_per_y_ * (y - from_.y), least_, most_); }
 
  private:
@@ -117,6 +118,9 @@ void add_edge_in_row(const Shape::Edge& edge, int row, std::size_t columns, cons
   const double high = std::min<double>(row + 1.0, std::max(edge.from.y, edge.to.y));
   if (!(low < high)) return;
   const double sign = edge.from.y > edge.to.y ? 1.0 : -1.0;
+  const Slope slope(edge);
+  if (slope.is_within(width))
+    return add_piece(columns, slope.x_at(low), slope.x_at(high), sign * (high - low), add);
   // Cut where it leaves the picture; the pieces outside are moved to its border, which keeps the areas
   // inside.
   std::array<double, 4> cuts = {low, high, high, high};
@@ -127,8 +131,7 @@ void add_edge_in_row(const Shape::Edge& edge, int row, std::size_t columns, cons
         edge.from.y + (edge.to.y - edge.from.y) * (border - edge.from.x) / (edge.to.x - edge.from.x);
     if (y > low && y < high) cuts[static_cast<std::size_t>(count++)] = y;
   }
-  if (count > 1) std::sort(cuts.begin(), cuts.end());
-  const Slope slope(edge);
+  std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     if (!(cuts[i] < cuts[i + 1])) continue;
     const double from = std::clamp(slope.x_at(cuts[i]), 0.0, width);
