@@ -138,10 +138,15 @@ double share_of_sample(double sample, double middle, double length) {
   return (below(middle + length / 2) - below(middle - length / 2)) / length;
 }
 
+/// Of a stretch about a place, how much lies between 0 and an end.
+double share_within(double middle, double length, double end) {
+  return std::max(0.0, std::min(middle + length / 2, end) - std::max(middle - length / 2, 0.0)) / length;
+}
+
 /// Mean radiance × g_source of a cell, from what the map says of its middle and the middles of its sides. The
-/// scene goes on beyond its edges.
-double mean_of_cell(const Scene& scene, const SceneMap& map, const SensorGeometry& grid, int column,
-                    int row) {
+/// scene goes on beyond its edges, unless it is dark there.
+double mean_of_cell(const Scene& scene, const SceneMap& map, const SensorGeometry& grid, int column, int row,
+                    Surround surround = Surround::extend) {
   const SceneMap::Place middle = map.place(grid.x_mm(column + 0.5), grid.y_mm(row + 0.5));
   if (middle.g_source_sr == 0) return 0;
   const double width = map.place(grid.x_mm(column + 1), grid.y_mm(row + 0.5)).column -
@@ -156,6 +161,9 @@ double mean_of_cell(const Scene& scene, const SceneMap& map, const SensorGeometr
       sum += share_of_sample(i, middle.row, height) * share_of_sample(j, middle.column, width) *
              double(scene.band(0)[static_cast<std::size_t>(sample_row * scene.columns() + sample)]);
     }
+  if (surround == Surround::zero)
+    sum *= share_within(middle.row, std::abs(height), scene.rows()) *
+           share_within(middle.column, std::abs(width), scene.columns());
   return middle.g_source_sr * sum;
 }
 
@@ -209,6 +217,28 @@ TEST(IdealIrradiance, IsThatOfEachCellsOwnPlace) {
         ASSERT_NEAR(image.row(static_cast<std::size_t>(row))[column], wanted, 3e-5) << row << ", " << column;
       }
     EXPECT_EQ(dark > 0, columns >= 600) << columns;
+  }
+}
+
+// The scene ends within the frame: cells that see some of it have as much, and none beyond have any, or all
+// go on with its last samples.
+TEST(IdealIrradiance, EndsWhereTheSceneEnds) {
+  Scene scene(211, 157, {550}, 25, std::nullopt);
+  for (std::size_t i = 0; i < scene.band_size(); ++i)
+    scene.band(0)[i] = 1 + static_cast<float>((i * 2654435761U >> 7) % 1000) / 1000;
+  const SensorGeometry grid{431, 301, 7.5};
+  const SceneMap map = map_of(make_table(barrel_recipe()), scene, grid);
+  ASSERT_LE(map.finest_samples_per_mm() * 0.0075, 1);
+  for (const Surround surround : {Surround::zero, Surround::extend}) {
+    const CellPlane image = ideal_irradiance(scene, 0, map, grid, 1, surround);
+    std::size_t beyond = 0;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column) {
+        const double wanted = mean_of_cell(scene, map, grid, column, row, surround);
+        if (wanted == 0) ++beyond;
+        ASSERT_NEAR(image.row(static_cast<std::size_t>(row))[column], wanted, 1e-4) << row << ", " << column;
+      }
+    EXPECT_EQ(beyond > 1000, surround == Surround::zero);
   }
 }
 
