@@ -86,6 +86,13 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
   for (const auto& [from, to, expected] : std::vector<std::array<std::string, 3>>{
            {"\"items\": 10", "\"items\": 0", "recipe.json:1: items is 0; a number from 1"},
            {"\"items\": 10", "\"items\": 1.5", "a whole number would be right"},
+           {"\"items\": 10", "\"items\": 10, \"seed\": 9007199254740993", "a number from 0 to"},
+           {"\"items\": 10", "\"items\": 10, \"about\": 0", "about must be"},
+           {"\"f_number\": {", "\"build\": 1e-300, \"f_number\": {", "a whole number would be right"},
+           {"\"f_number\": {", "\"build\": {\"choose\": [1, 2.5]}, \"f_number\": {",
+            "a whole number would be right"},
+           {"\"f_number\": {", "\"sensor_serial\": {\"uniform\": [1, 3]}, \"f_number\": {",
+            "\"integer\" would be right"},
            {"petzval-dataset/1", "petzval-dataset/2", "\"petzval-dataset/1\" would be right"},
            {"f_number", "fnumber", "is no parameter; there are lens, grade"},
            {"[2.8, 8]", "[8, 2.8]", "has its ends the wrong way round"},

@@ -41,6 +41,9 @@ void require_writable(const std::string& path);
 /// Writes `bytes` to `path`, whole or not at all. \throws InputError, Failure as WholeFile.
 void write_whole_file(const std::string& path, std::string_view bytes);
 
+/// No description and no table in text is larger [bytes].
+inline constexpr std::size_t largest_text = std::size_t{1} << 26;
+
 /// Reads a whole file. \throws InputError if it cannot be read or is larger than `max_bytes`.
 std::string read_whole_file(const std::string& path, std::size_t max_bytes = std::size_t{1} << 32);
 

@@ -12,7 +12,6 @@ namespace petzval {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double most_whole = 9007199254740992;  // 2^53
 /// Purpose of the random numbers of the first parameter; those of the others follow.
 constexpr std::uint32_t first_purpose = 0x44530000;  // "DS"
 /// Of those of single lights.
@@ -32,14 +31,15 @@ const std::vector<RecipeParameter>& recipe_parameters() {
   static const std::vector<RecipeParameter> all = {
       {"lens", "a file or the name of a bundled lens", true, 0, 0},
       {"grade", "of its tolerances, where the lens has none: commercial, precision or high", true, 0, 0},
-      {"build", "which lens off the line, a whole number; absent: as designed", false, 0, most_whole},
+      {"build", "which lens off the line, a whole number; absent: as designed", false, 0, most_whole, true},
       {"f_number", "paraxial, at infinity; absent: as designed", false, tiny, 1e6},
       {"stop_down_ev", "stops below the lens's widest, in place of an f-number", false, 0, 40},
       {"focus", "as a camera takes it: infinity, 1.2m, best-spot; absent: on the scene", true, 0, 0},
       {"focus_distance_m", "from the sensor, in place of a focus", false, tiny, 1e9},
       {"defocus_mm", "of the sensor from there, away from the lens", false, -1e3, 1e3},
       {"sensor", "a file or the name of a bundled sensor", true, 0, 0},
-      {"sensor_serial", "which copy of the sensor, a whole number: its fixed patterns", false, 0, most_whole},
+      {"sensor_serial", "which copy of the sensor, a whole number: its fixed patterns", false, 0, most_whole,
+       true},
       {"scene", "a chart, a photograph or a spectral file", true, 0, 0},
       {"scene_distance_m", "from the sensor; absent: the scene's, or infinity", false, tiny, 1e9},
       {"scene_angle_deg", "its width; absent: charts and photographs fill the frame", false, tiny, 179},

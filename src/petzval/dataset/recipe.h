@@ -40,7 +40,10 @@ struct RecipeParameter {
   const char* meaning;  ///< with its unit
   bool is_name;         ///< its values are names, not numbers
   double least, most;   ///< of a number
+  bool is_whole = false;
 };
+/// The largest whole number that a recipe can say: a double holds it, and none beside it.
+inline constexpr double most_whole = 9007199254740991;  // 2^53 - 1
 /// All of them. A parameter's place in this list is part of its random numbers: new ones go to the end.
 const std::vector<RecipeParameter>& recipe_parameters();
 

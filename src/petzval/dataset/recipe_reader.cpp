@@ -70,6 +70,8 @@ class ParameterReader {
         for (const auto& [other, unused] : entry.members("a distribution"))
           if (other != key && !(other == "within" && kind == Distribution::Kind::normal))
             entry.fail(fmt::format("has \"{}\" beside \"{}\"; one of them would be right", other, key));
+        if (parameter_.is_whole && kind != Distribution::Kind::integer)
+          entry.fail(fmt::format("has \"{}\" for a whole number; \"integer\" would be right", key));
         return kind == Distribution::Kind::normal ? normal(entry, *found) : spread(kind, *found);
       }
     return choice(entry);
@@ -77,7 +79,10 @@ class ParameterReader {
 
  private:
   ParameterValue value(const JsonEntry& entry) const {
-    if (!parameter_.is_name) return number_in(entry, parameter_.least, parameter_.most);
+    if (!parameter_.is_name) {
+      const auto read = parameter_.is_whole ? whole_in : number_in;
+      return read(entry, parameter_.least, parameter_.most);
+    }
     const std::string name = entry.text("a name");
     if (name.empty()) entry.fail("is empty");
     return name;
@@ -273,13 +278,14 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   root.allow_only({"format", "about", "items", "items_per_part", "seed", "parameters", "build_tolerances",
                    "sensor_set", "wavelengths_nm", "tolerance", "samples_per_pixel", "denoise_light", "bits",
                    "truth", "psf_grid"});
+  if (const auto about = root.find("about")) about->text("a text that says what the items are");
   Recipe recipe;
   recipe.folder = folder;
   recipe.items = static_cast<std::size_t>(whole_in(root.at("items"), 1, most_items));
   if (const auto each = root.find("items_per_part"))
     recipe.items_per_part = static_cast<std::size_t>(whole_in(*each, 1, 1e6));
   if (const auto seed = root.find("seed"))
-    recipe.seed = static_cast<std::uint64_t>(whole_in(*seed, 0, 9007199254740992));
+    recipe.seed = static_cast<std::uint64_t>(whole_in(*seed, 0, most_whole));
   read_parameters(root.at("parameters"), recipe);
   if (const auto tolerances = root.find("build_tolerances"))
     for (const JsonEntry& item : tolerances->items("a list of tolerances")) {

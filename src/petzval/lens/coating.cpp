@@ -107,7 +107,7 @@ void Coating::validate() const {
 
 Coating read_coating(const std::string& path_or_name) {
   const std::string file = find_data_file("coatings", ".json", path_or_name, "coating");
-  const JsonDocument document(read_whole_file(file), file);
+  const JsonDocument document(read_whole_file(file, largest_text), file);
   const JsonEntry root(document);
   if (const std::string format = root.at("format").text("\"petzval-coating/1\"");
       format != "petzval-coating/1")

@@ -47,7 +47,7 @@ double number_of(const std::string& key, const std::string& value) {
 
 void assign(Scatter& scatter, const std::string& key, const std::string& value) {
   if (key == "table")
-    scatter.table = parse_scatter_table(read_whole_file(value), value);
+    scatter.table = parse_scatter_table(read_whole_file(value, largest_text), value);
   else if (key == "roughness")
     scatter.roughness_nm = number_of(key, value);
   else if (key == "b0")

@@ -89,7 +89,7 @@ SceneSpectrum from_pairs(const Location& at, const std::vector<double>& numbers,
 SceneSpectrum from_file(const Location& at, const std::string& name, SpectrumRole role) {
   std::string text;
   try {
-    text = read_whole_file(resolved_path(at, name));
+    text = read_whole_file(resolved_path(at, name), largest_text);
   } catch (const InputError& error) {
     throw scene_error(at, fmt::format("\"{}\" is neither a spectrum that Petzval knows nor a file: {}", name,
                                       error.what()));

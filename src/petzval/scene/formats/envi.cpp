@@ -151,7 +151,7 @@ SpectralCube decode_envi(std::string_view header_text, std::string_view data, co
 SpectralCube read_envi(const std::string& path, const CubeCheck& check) {
   const std::string header_file = is_header(path) ? path : header_of(path);
   const std::string data_file = is_header(path) ? data_of(path) : path;
-  const EnviHeader header = parse_envi_header(read_whole_file(header_file), header_file);
+  const EnviHeader header = parse_envi_header(read_whole_file(header_file, largest_text), header_file);
   std::ifstream data(data_file, std::ios::binary);
   if (!data) throw InputError(data_file, "cannot be read");
   check_size(header, fs::file_size(data_file), header_file, data_file);
