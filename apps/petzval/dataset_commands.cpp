@@ -50,7 +50,7 @@ void write_starter(const std::string& path, const Shared& shared) {
 void print_parameters(const Shared& shared) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   const auto add = [&](const RecipeParameter& each, const std::string& name) {
-    const char* is = each.is_name ? "name" : "number";
+    const char* is = each.is_name ? "name" : each.is_whole ? "whole" : "number";
     rows.push_back({{"parameter", name}, {"is", is}, {"meaning", each.meaning}});
     if (!shared.json) fmt::print("{:<26}{:<8}{}\n", name, is, each.meaning);
   };
