@@ -87,13 +87,23 @@ std::vector<Tracer> LensCamera::spectrum_ends() const {
   return {tracers_[tracers_.size() / 2], tracers_.front(), tracers_.back()};
 }
 
+/// How many radii of the film regions are found at. Those of a lens with poses, which are looked for at all
+/// azimuths, take longer than a small picture.
+std::size_t LensCamera::film_radii(double corner_mm) const {
+  constexpr std::size_t most = ExitPupilRegions::default_radii, least = 12;
+  constexpr double pixels_apart = 4;
+  if (tracers_.front().is_centred()) return most;
+  const double pixels = corner_mm / (film_.pitch_um * mm_per_um);
+  return std::clamp(static_cast<std::size_t>(pixels / pixels_apart), least, most);
+}
+
 /// Of the round stop, whatever its blades: regions depend on the film radius alone. The pupils of the ends
 /// and the middle of the spectrum hold those between.
 ExitPupilRegions LensCamera::find_regions(const Lens& lens) const {
   const std::vector<Tracer> ends = spectrum_ends();
   const double corner_mm =
       film_.half_diagonal_mm() + std::sqrt(2) * options_.margin_pixels * film_.pitch_um * mm_per_um;
-  ExitPupilRegions regions(ends, corner_mm * corner_margin);
+  ExitPupilRegions regions(ends, corner_mm * corner_margin, film_radii(corner_mm));
   constexpr int probes = 64;
   for (int i = 0; i <= probes; ++i)
     if (regions.area_sr(0, corner_mm * i / probes) > 0) return regions;

@@ -83,6 +83,7 @@ class LensCamera final : public FilmCamera {
     double alpha = 0, beta = 0, area = 0;  ///< direction cosines of travelling light; 1/density
   };
   struct Led;
+  std::size_t film_radii(double corner_mm) const;
   ExitPupilRegions find_regions(const Lens& lens) const;
   /// Tracers of the middle of the spectrum and of its ends.
   std::vector<Tracer> spectrum_ends() const;
