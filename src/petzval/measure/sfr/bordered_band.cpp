@@ -51,28 +51,68 @@ std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vec
 }
 
 BorderedCholesky::BorderedCholesky(BorderedBand matrix) : factor_(std::move(matrix)), good_(true) {
-  const int band = factor_.band(), border = factor_.border();
   per_diagonal_.reserve(static_cast<std::size_t>(factor_.size()));
-  for (int j = 0; j < factor_.size() && good_; ++j) {
+  // The loops over the borders that edge-spread functions have are unrolled.
+  switch (factor_.border()) {
+    case 4:
+      eliminate_band<4>();
+      break;
+    case 6:
+      eliminate_band<6>();
+      break;
+    case 8:
+      eliminate_band<8>();
+      break;
+    case 9:
+      eliminate_band<9>();
+      break;
+    default:
+      eliminate_band<Eigen::Dynamic>();
+  }
+  eliminate_border();
+}
+
+double BorderedCholesky::take_root(double& diagonal) {
+  good_ = diagonal > 0 && std::isfinite(diagonal);
+  if (!good_) return 0;
+  diagonal = std::sqrt(diagonal);
+  return per_diagonal_.emplace_back(1 / diagonal);
+}
+
+template <int border_size>
+void BorderedCholesky::eliminate_band() {
+  const int band = factor_.band(), border = border_size == Eigen::Dynamic ? factor_.border() : border_size;
+  double beside[BorderedBand::most_border];
+  for (int j = 0; j < band; ++j) {
     double* const l = factor_.column(j);
-    const bool in_band = j < band;
-    const int reach = in_band ? below(factor_, j) : 0;
-    double& diagonal = in_band ? l[0] : l[corner + j - band];
-    good_ = diagonal > 0 && std::isfinite(diagonal);
-    diagonal = std::sqrt(diagonal);
-    const double scale = 1 / diagonal;
-    per_diagonal_.push_back(scale);
+    const int reach = below(factor_, j);
+    const double scale = take_root(l[0]);
+    if (!good_) return;
     for (int p = 1; p <= reach; ++p) l[p] *= scale;
-    const int first = in_band ? 0 : j - band + 1;
-    for (int r = first; r < border; ++r) l[corner + r] *= scale;
+    for (int r = 0; r < border; ++r) beside[r] = l[corner + r] *= scale;
     for (int p = 1; p <= reach; ++p) {
       double* const other = factor_.column(j + p);
-      for (int q = p; q <= reach; ++q) other[q - p] -= l[p] * l[q];
-      for (int r = 0; r < border; ++r) other[corner + r] -= l[p] * l[corner + r];
+      const double share = l[p];
+      for (int q = p; q <= reach; ++q) other[q - p] -= share * l[q];
+      for (int r = 0; r < border; ++r) other[corner + r] -= share * beside[r];
     }
-    for (int s = first; s < border; ++s) {
-      double* const other = factor_.column(band + s);
-      for (int r = s; r < border; ++r) other[corner + r] -= l[corner + s] * l[corner + r];
+    // Of the border's corner the upper half is written, too, and not used.
+    for (int s = 0; s < border; ++s) {
+      double* const other = factor_.column(band + s) + corner;
+      for (int r = 0; r < border; ++r) other[r] -= beside[s] * beside[r];
+    }
+  }
+}
+
+void BorderedCholesky::eliminate_border() {
+  const int band = factor_.band(), border = factor_.border();
+  for (int k = 0; k < border && good_; ++k) {
+    double* const l = factor_.column(band + k) + corner;
+    const double scale = take_root(l[k]);
+    for (int r = k + 1; r < border; ++r) l[r] *= scale;
+    for (int s = k + 1; s < border; ++s) {
+      double* const other = factor_.column(band + s) + corner;
+      for (int r = s; r < border; ++r) other[r] -= l[s] * l[r];
     }
   }
 }

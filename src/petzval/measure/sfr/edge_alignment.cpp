@@ -31,6 +31,8 @@ EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine
   EdgeProfile profile;
   profile.low = 2 * (static_cast<double>(first) - half) - 1;
   profile.high = 2 * (static_cast<double>(last) - half) + 1;
+  profile.points.reserve(samples.size());
+  profile.sample.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (places[i].distance >= profile.low && places[i].distance <= profile.high) {
       profile.points.push_back({places[i].distance, samples[i].value, places[i].along, 0});

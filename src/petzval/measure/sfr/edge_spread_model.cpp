@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace petzval {
 
@@ -48,11 +49,55 @@ struct Solved {
 
 }  // namespace
 
+template <typename Use>
+auto EdgeSpreadModel::with_fixed(const Use& use) const {
+  if (options_.light_order == 2)
+    return use(std::integral_constant<int, closed_forms + EdgeSpreadBasis::light_terms[2]>());
+  if (options_.light_order == 1)
+    return use(std::integral_constant<int, closed_forms + EdgeSpreadBasis::light_terms[1]>());
+  return use(std::integral_constant<int, closed_forms>());
+}
+
+template <int fixed>
+void EdgeSpreadModel::add_products(const Row& row, double weight, BorderedBand& normal,
+                                   Corner<fixed>& corner) {
+  const auto& f = row.fixed;
+  for (std::size_t r = 0; r < fixed; ++r) {
+    const double value = weight * f[r];
+    for (std::size_t s = 0; s <= r; ++s) corner[r][s] += value * f[s];
+  }
+  for (int p = 0; p < support && row.first >= 0; ++p) {
+    double* const column = normal.column(row.first + p);
+    const double value = weight * row.splines[p];
+    for (int i = p; i < support; ++i) column[i - p] += value * row.splines[i];
+    for (int r = 0; r < fixed; ++r) column[support + r] += value * f[r];
+  }
+}
+
+template <int fixed>
+void EdgeSpreadModel::add_corner(const Corner<fixed>& corner, BorderedBand& normal) const {
+  for (int r = 0; r < fixed; ++r)
+    for (int s = 0; s <= r; ++s) normal.at(padded() + r, padded() + s) += corner[r][s];
+}
+
+template <int fixed>
+BorderedBand EdgeSpreadModel::weighted_normal(std::span<const double> weights) const {
+  BorderedBand normal(padded(), fixed);
+  Corner<fixed> corner{};
+  for (std::size_t i = 0; i < weights.size(); ++i) add_products<fixed>(rows_[i], weights[i], normal, corner);
+  add_corner<fixed>(corner, normal);
+  return normal;
+}
+
+BorderedBand EdgeSpreadModel::normal_of(std::span<const double> weights) const {
+  return trimmed(with_fixed([&](auto fixed) { return weighted_normal<fixed()>(weights); }));
+}
+
 template <int fixed>
 void EdgeSpreadModel::add_points(std::span<const EdgePoint> points) {
-  BorderedBand& normal = padded_normal_;
   Eigen::VectorXd& right = padded_right_;
-  double corner[fixed][fixed] = {}, corner_right[fixed] = {};
+  Corner<fixed> corner{};
+  double corner_right[fixed] = {};
   const double cells = basis_.splines + support - 1;
   for (const EdgePoint& point : points) {
     Row& row = rows_.emplace_back();
@@ -71,27 +116,18 @@ void EdgeSpreadModel::add_points(std::span<const EdgePoint> points) {
       f[7] = f[5] * point.along;
       f[8] = f[5] * d / options_.core_px;
     }
-    for (int r = 0; r < fixed; ++r) {
-      for (int s = 0; s <= r; ++s) corner[r][s] += f[r] * f[s];
-      corner_right[r] += f[r] * point.value;
-    }
+    for (int r = 0; r < fixed; ++r) corner_right[r] += f[r] * point.value;
     // Knots lie at −core + i·knot; an interval between them is covered by six splines.
     const double at = (d + options_.core_px) / options_.knot_px, cell = std::floor(at);
-    if (!(cell >= 0 && cell < cells)) continue;
-    row.first = static_cast<int>(cell);
-    quintic(at - cell, row.splines.data(), row.slopes.data());
-    for (int p = 0; p < support; ++p) {
-      double* const column = normal.column(row.first + p);
-      const double value = row.splines[p];
-      for (int i = p; i < support; ++i) column[i - p] += value * row.splines[i];
-      for (int r = 0; r < fixed; ++r) column[support + r] += value * f[r];
-      right[row.first + p] += value * point.value;
+    if (cell >= 0 && cell < cells) {
+      row.first = static_cast<int>(cell);
+      quintic(at - cell, row.splines.data(), row.slopes.data());
+      for (int p = 0; p < support; ++p) right[row.first + p] += row.splines[p] * point.value;
     }
+    add_products<fixed>(row, 1, padded_normal_, corner);
   }
-  for (int r = 0; r < fixed; ++r) {
-    for (int s = 0; s <= r; ++s) normal.at(padded() + r, padded() + s) += corner[r][s];
-    right[padded() + r] += corner_right[r];
-  }
+  add_corner<fixed>(corner, padded_normal_);
+  for (int r = 0; r < fixed; ++r) right[padded() + r] += corner_right[r];
 }
 
 BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
@@ -115,12 +151,7 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
   rows_.reserve(points.size());
   padded_normal_ = BorderedBand(padded(), basis_.fixed());
   padded_right_ = Eigen::VectorXd::Zero(padded_normal_.size());
-  if (options_.light_order == 2)
-    add_points<closed_forms + EdgeSpreadBasis::light_terms[2]>(points);
-  else if (options_.light_order == 1)
-    add_points<closed_forms + EdgeSpreadBasis::light_terms[1]>(points);
-  else
-    add_points<closed_forms>(points);
+  with_fixed([&](auto fixed) { add_points<fixed()>(points); });
   fit(points);
 }
 

@@ -132,7 +132,7 @@ class EdgeSpreadModel {
 
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations
-    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it; empty without
+    Eigen::MatrixXd rounding_;  ///< and what rounding adds: lower half and half the diagonal; empty without
   };
 
  private:
@@ -148,7 +148,21 @@ class EdgeSpreadModel {
   static constexpr int margin = support - 1;
   int padded() const { return basis_.splines + 2 * margin; }
   template <int fixed>
+  using Corner = std::array<std::array<double, fixed>, fixed>;
+  template <int fixed>
   void add_points(std::span<const EdgePoint> points);
+  /// Adds a row's products to the band, and those of functions that reach everywhere to the corner.
+  template <int fixed>
+  static void add_products(const Row& row, double weight, BorderedBand& normal, Corner<fixed>& corner);
+  template <int fixed>
+  void add_corner(const Corner<fixed>& corner, BorderedBand& normal) const;
+  template <int fixed>
+  BorderedBand weighted_normal(std::span<const double> weights) const;
+  /// \returns what `use` makes of the number of functions that reach everywhere, as a constant.
+  template <typename Use>
+  auto with_fixed(const Use& use) const;
+  /// Normal equations of the unknowns, of points of these weights.
+  BorderedBand normal_of(std::span<const double> weights) const;
   BorderedBand trimmed(const BorderedBand& padded) const;
   void fit(std::span<const EdgePoint> points);
 

@@ -73,37 +73,23 @@ std::vector<std::complex<double>> EdgeSpreadModel::transforms(std::span<const do
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
-    : model_(model), spread_(model.basis_.splines, model.basis_.border()) {
+    : model_(model), spread_(model.normal_of(variance)) {
   const int splines = model.basis_.splines, fixed = model.basis_.fixed();
-  BorderedBand all(model.padded(), fixed);
   double mean = 0;
-  for (std::size_t i = 0; i < variance.size(); ++i) {
-    const Row& row = model.rows_[i];
-    mean += variance[i] / static_cast<double>(variance.size());
-    for (int r = 0; r < fixed; ++r)
-      for (int s = 0; s <= r; ++s)
-        all.at(model.padded() + r, model.padded() + s) += variance[i] * row.fixed[r] * row.fixed[s];
-    for (int p = 0; p < support && row.first >= 0; ++p) {
-      double* const column = all.column(row.first + p);
-      const double value = variance[i] * row.splines[p];
-      for (int k = p; k < support; ++k) column[k - p] += value * row.splines[k];
-      for (int r = 0; r < fixed; ++r) column[support + r] += value * row.fixed[r];
-    }
-  }
-  spread_ = model.trimmed(all);
+  for (const double each : variance) mean += each / static_cast<double>(variance.size());
   // What the priors say of the profile is as uncertain as they are weak.
   spread_.add(mean, model.priors_);
   if (rounding.none()) return;
   rounding_ = Eigen::MatrixXd::Zero(spread_.size(), spread_.size());
   rounding.add_spread(
-      [&](std::size_t i, const std::function<void(int, double)>& entry) {
+      [&](std::size_t i, double weight, double* sum) {
         const Row& row = model.rows_[i];
         for (int p = 0; p < support && row.first >= 0; ++p)
-          if (const int j = row.first + p - margin; j >= 0 && j < splines) entry(j, row.splines[p]);
-        for (int r = 0; r < fixed; ++r) entry(model.basis_.place(r), row.fixed[r]);
+          if (const int j = row.first + p - margin; j >= 0 && j < splines) sum[j] += weight * row.splines[p];
+        for (int r = 0; r < fixed; ++r) sum[model.basis_.place(r)] += weight * row.fixed[r];
       },
       rounding_);
-  rounding_ = Eigen::MatrixXd(rounding_.selfadjointView<Eigen::Lower>());
+  rounding_.diagonal() *= 0.5;
 }
 
 void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, std::complex<double> value, double* gradient,
@@ -148,9 +134,9 @@ std::array<double, BorderedBand::lanes> EdgeSpreadModel::Deviation::variances(
     const BorderedBand::Block& x) const {
   std::array<double, BorderedBand::lanes> result = spread_.quadratic(x);
   if (rounding_.size() == 0) return result;
-  const BorderedBand::Block of_rounding = rounding_ * x;
+  const BorderedBand::Block of_half = rounding_.triangularView<Eigen::Lower>() * x;
   Eigen::Map<Eigen::Array<double, 1, BorderedBand::lanes>>(result.data()) +=
-      (x.array() * of_rounding.array()).colwise().sum();
+      2 * (x.array() * of_half.array()).colwise().sum();
   return result;
 }
 

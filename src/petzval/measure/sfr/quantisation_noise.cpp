@@ -3,7 +3,6 @@
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -35,83 +34,84 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
     for (const std::size_t i : samples)
       noise2 +=
           std::max(0.0, variance[i] / (step_[i] * step_[i]) - 1.0 / 12) / static_cast<double>(samples.size());
+    const double first_harmonic = std::exp(-2 * pi * pi * noise2);
+    // What is left makes less than 1e-11 of the variance of some thousand pixels.
+    if (constexpr double negligible = 1e-7; first_harmonic < negligible) continue;
     const double x = (static_cast<double>(index) + 0.5) / cells_a_step;
     Cell cell;
     cell.window = static_cast<int>(std::floor(x));
     // Half cosines, whose squares sum to 1.
     cell.lower = std::cos(0.5 * pi * (x - cell.window));
     cell.upper = std::sin(0.5 * pi * (x - cell.window));
-    for (int k = 1; k <= harmonics; ++k)
-      cell.turn[k - 1] = std::polar(
-          std::sqrt(0.5 * scale) / (pi * k) * std::exp(-2 * pi * pi * k * k * noise2), 2 * pi * k * x);
+    const std::complex<double> once = std::polar(1.0, 2 * pi * x);
+    std::complex<double> turn = std::sqrt(0.5 * scale) / pi;
+    for (int k = 1; k <= harmonics; ++k) {
+      turn *= once;
+      const double amplitude = std::exp(-2 * pi * pi * k * k * noise2) / k;
+      cell.turn.segment<2>(2 * (k - 1)) << amplitude * turn.real(), amplitude * turn.imag();
+    }
     cells_.push_back(cell);
     samples_.push_back(std::move(samples));
   }
 }
 
-namespace {
-
 /// For each harmonic, the sum of rows, most of whose entries are zero.
-template <int harmonics>
-class SparseSums {
+class QuantisationNoise::SparseSums {
  public:
-  explicit SparseSums(Eigen::Index size) : used_(static_cast<std::size_t>(size)) {
-    for (auto& sum : sums_) sum.resize(static_cast<std::size_t>(size));
-  }
+  explicit SparseSums(std::size_t size) : sums_(size, Harmonics::Zero()), used_(size) {}
   bool empty() const { return touched_.empty(); }
-  void add(std::size_t i, double value, double share, const std::complex<double>* turn) {
+  void add(std::size_t i, double value, const Harmonics& turn) {
     if (!used_[i]) {
       used_[i] = true;
       touched_.push_back(i);
     }
-    for (int k = 0; k < harmonics; ++k) sums_[k][i] += share * value * turn[k];
+    sums_[i] += value * turn;
   }
   /// Adds the products of all pairs, and begins anew.
   void close(Eigen::MatrixXd& covariance) {
     for (const std::size_t i : touched_)
-      for (const std::size_t j : touched_) {
-        if (j > i) continue;
-        double sum = 0;
-        for (int k = 0; k < harmonics; ++k)
-          sum += sums_[k][i].real() * sums_[k][j].real() + sums_[k][i].imag() * sums_[k][j].imag();
-        covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += sum;
-      }
+      for (const std::size_t j : touched_)
+        if (j <= i)
+          covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
+              (sums_[i] * sums_[j]).sum();
     for (const std::size_t i : touched_) {
       used_[i] = false;
-      for (int k = 0; k < harmonics; ++k) sums_[k][i] = 0;
+      sums_[i].setZero();
     }
     touched_.clear();
   }
 
  private:
-  std::array<std::vector<std::complex<double>>, static_cast<std::size_t>(harmonics)> sums_;
+  std::vector<Harmonics> sums_;
   std::vector<bool> used_;
   std::vector<std::size_t> touched_;
 };
 
-}  // namespace
-
-void QuantisationNoise::add_spread(const RowOf& row_of, Eigen::MatrixXd& covariance) const {
+void QuantisationNoise::add_spread(const AddRow& add_row, Eigen::MatrixXd& covariance) const {
   if (cells_.empty()) return;
-  SparseSums<harmonics> here(covariance.rows()), next(covariance.rows());
+  const auto size = static_cast<std::size_t>(covariance.rows());
+  SparseSums here(size), next(size);
   int window = cells_.front().window;
   const auto close_one = [&] {
     here.close(covariance);
     std::swap(here, next);
     ++window;
   };
+  std::vector<double> sum(size);
   for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const Cell& cell = cells_[c];
     // Between values that lie far apart there is nothing.
-    while (window < cells_[c].window) {
-      if (here.empty() && next.empty()) window = cells_[c].window - 1;
+    while (window < cell.window) {
+      if (here.empty() && next.empty()) window = cell.window - 1;
       close_one();
     }
-    for (const std::size_t i : samples_[c])
-      row_of(i, [&](int unknown, double value) {
-        const auto at = static_cast<std::size_t>(unknown);
-        here.add(at, step_[i] * value, cells_[c].lower, cells_[c].turn);
-        next.add(at, step_[i] * value, cells_[c].upper, cells_[c].turn);
-      });
+    std::ranges::fill(sum, 0.0);
+    for (const std::size_t i : samples_[c]) add_row(i, step_[i], sum.data());
+    for (std::size_t j = 0; j < size; ++j) {
+      if (sum[j] == 0) continue;
+      here.add(j, cell.lower * sum[j], cell.turn);
+      next.add(j, cell.upper * sum[j], cell.turn);
+    }
   }
   close_one();
   close_one();

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -28,19 +27,22 @@ class QuantisationNoise {
 
   bool none() const { return cells_.empty(); }
 
-  /// Tells the entries of the row that sample i has in a linear fit which are not zero.
-  using RowOf =
-      std::function<void(std::size_t i, const std::function<void(int unknown, double value)>& entry)>;
+  /// Adds `weight` times the row that sample i has in a linear fit to a sum of rows.
+  using AddRow = std::function<void(std::size_t i, double weight, double* sum)>;
   /// Adds the covariance of Σ row_i · value_i to the lower half of a matrix.
-  void add_spread(const RowOf& row_of, Eigen::MatrixXd& covariance) const;
+  void add_spread(const AddRow& add_row, Eigen::MatrixXd& covariance) const;
 
  private:
   static constexpr int harmonics = 6;
+  /// Real and imaginary part of each harmonic.
+  using Harmonics = Eigen::Array<double, 2 * harmonics, 1>;
+  /// Of each unknown.
+  class SparseSums;
   /// Samples that lie in the same sixteenth of a step.
   struct Cell {
-    int window = 0;                        ///< the step that they lie above
-    double lower = 0, upper = 0;           ///< share in this window and in the next
-    std::complex<double> turn[harmonics];  ///< amplitude · exp(2πikx)
+    int window = 0;               ///< the step that they lie above
+    double lower = 0, upper = 0;  ///< share in this window and in the next
+    Harmonics turn;               ///< amplitude · exp(2πikx)
   };
   std::vector<std::vector<std::size_t>> samples_;  ///< of each cell
   std::vector<double> step_;                       ///< size of a step at each sample
