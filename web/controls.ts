@@ -47,9 +47,7 @@ export class Slider {
       });
     }
     this.range.addEventListener("input", () => {
-      const value = this.valueOf(Number(this.range.value));
-      this.showNumber(value);
-      wish.changed(value, false);
+      wish.changed(this.valueOf(Number(this.range.value)), false);  // whoever is told shows the number
     });
     this.range.addEventListener("change", () => wish.changed(this.valueOf(Number(this.range.value)), true));
     this.range.addEventListener("dblclick", () => { this.show(wish.usual); wish.changed(wish.usual, true); });

@@ -24,6 +24,11 @@ const shownPlots: [string, string, string][] = [
   ["ghosts", "Ghosts", "ghosts"],
 ];
 
+/** While a slider is dragged the rest of the page waits for its rays, but no longer than this. */
+const slowRays_ms = 40;
+/** What a frame takes from the page's thread to the screen, about; it goes sooner with nothing beside it. */
+const presenting_ms = 8;
+
 /** The file that says what it is, and the numbers of an ENVI header or the .json of a .npy, if they came together. */
 function withCompanion(files: File[]): [File | undefined, File | undefined] {
   const header = files.find(each => /\.(hdr|npy)$/i.test(each.name));
@@ -289,16 +294,20 @@ class Page {
     this.ask();  // the server works while the page does
     this.history.record(JSON.stringify(this.session), gesture);
     if (done && gesture !== "plot") this.history.endGesture();
-    this.refreshSoon();
+    this.stale = true;
+    if (done) this.refreshBehindFrame();
+    else this.refreshing ??= setTimeout(() => this.refreshBehindFrame(), slowRays_ms);  // behind the rays: takeLayout()
   }
 
-  /** Behind the next frame, which is that of the rays if the server is quick. */
-  private refreshSoon(): void {
-    if (this.stale) return;
-    this.stale = true;
-    requestAnimationFrame(() => setTimeout(() => { if (this.stale) this.refresh(); }));
+  private refreshBehindFrame(): void {
+    requestAnimationFrame(() => setTimeout(() => {
+      if (this.lastLayout) this.showFacts(this.lastLayout);
+      this.lastLayout = null;
+      if (this.stale) this.refresh();
+    }, presenting_ms));
   }
   private stale = false;  ///< whether the page shows a session of before
+  private refreshing: ReturnType<typeof setTimeout> | undefined;
 
   private alterLens(alter: (lens: Lens) => void, gesture: string, done = true): void {
     this.change(() => {
@@ -367,6 +376,8 @@ class Page {
   /** Everything that follows from the session alone. */
   private refresh(): void {
     this.stale = false;
+    clearTimeout(this.refreshing);
+    this.refreshing = undefined;
     const session = this.session;
     this.table.show(session.lens);
     this.picture.setCursor(session.cursor_mm);
@@ -490,7 +501,7 @@ class Page {
       cursor_mm: session.cursor_mm, plots: this.reporting ? shownPlots.map(([name]) => name) : [session.plot], picture: true};
     this.link.send(state);
     this.compare.show(state);
-    document.body.dataset.busy = "1";
+    if (document.body.dataset.busy !== "1") document.body.dataset.busy = "1";
   }
 
   private answered(): void {
@@ -618,6 +629,14 @@ class Page {
       this.widestOpen = Number(first.f_number.toPrecision(4));
       this.buildControls();
     }
+    this.answered();
+    this.lastLayout = message;
+    this.refreshBehindFrame();  // the rays are drawn first
+  }
+  private lastLayout: Incoming | null = null;  ///< whose facts are not shown yet
+
+  private showFacts(message: Incoming): void {
+    const first = message.first_order;
     const fact = (label: string, term: string, text: string) => h("span", {"data-term": term}, h("i", {}, label), text);
     this.facts.replaceChildren(
         fact("f", "efl", `${shown(first.efl_mm, 4)} mm`), fact("f/", "f-number", shown(first.f_number, 3)),
@@ -630,7 +649,6 @@ class Page {
       ? `No ray passes: ${message.blocked[0].text}.`
       : `No ray passes at field ${message.blocked.map((each: any) => shown(each.field)).join(", ")}: ${message.blocked[0].text}.`);
     for (const stage of ["lens", "camera"]) this.showProblem(stage, "");
-    this.answered();
   }
 
   private problems = new Map<string, string>();
