@@ -2,7 +2,7 @@
 // A camera that is turned from the middle of a plane scene, or a scene that has moved.
 #pragma once
 
-#include <petzval/imaging/plane_sampling.h>
+#include <petzval/imaging/row_view.h>
 #include <petzval/imaging/scene_look.h>
 #include <petzval/scene/scene.h>
 

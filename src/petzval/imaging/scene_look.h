@@ -3,7 +3,7 @@
 // answer.
 #pragma once
 
-#include <petzval/imaging/plane_sampling.h>
+#include <petzval/imaging/row_view.h>
 #include <petzval/sensor/sensor.h>
 
 #include <algorithm>
