@@ -2,11 +2,14 @@
 #include "imaging/synthetic_table.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 #include <petzval/imaging/distortion.h>
 #include <petzval/imaging/scene_rows.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <tuple>
 
 namespace petzval {
 namespace {
@@ -239,6 +242,31 @@ TEST(IdealIrradiance, EndsWhereTheSceneEnds) {
         ASSERT_NEAR(image.row(static_cast<std::size_t>(row))[column], wanted, 1e-4) << row << ", " << column;
       }
     EXPECT_EQ(beyond > 1000, surround == Surround::zero);
+  }
+}
+
+// From two doubles at a time to eight, whichever this machine can: inside the scene, at its edge and beyond,
+// where samples lie together and (on the small scene) where they do not.
+TEST(IdealIrradiance, IsTheSameOnEveryInstructionSet) {
+  for (const auto& [columns, rows, angle_deg] :
+       {std::tuple{211, 157, 25.0}, {401, 299, 40.0}, {9, 5, 20.0}}) {
+    Scene scene(columns, rows, {550}, angle_deg, std::nullopt);
+    for (std::size_t i = 0; i < scene.band_size(); ++i)
+      scene.band(0)[i] = 1 + static_cast<float>((i * 2654435761U >> 7) % 1000) / 1000;
+    const SensorGeometry grid{331, 201, 7.5};
+    const SceneMap map = map_of(make_table(barrel_recipe()), scene, grid);
+    for (const Surround surround : {Surround::zero, Surround::extend}) {
+      const CellPlane expected = ideal_irradiance(scene, 0, map, grid, 1, surround);
+      for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        const CellPlane image = ideal_irradiance(scene, 0, map, grid, 1, surround);
+        for (std::size_t i = 0; i < image.values.size(); ++i)
+          ASSERT_NEAR(image.values[i], expected.values[i], 1e-5) << hwy::TargetName(target) << " " << i;
+      }
+      hwy::SetSupportedTargetsForTest(0);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
   }
 }
 

@@ -3,7 +3,6 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/drawn_cells.h>
 #include <petzval/imaging/panorama_band.h>
-#include <petzval/imaging/plane_sampling.h>
 #include <petzval/imaging/scene_rows.h>
 
 #include <algorithm>

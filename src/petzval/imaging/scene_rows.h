@@ -6,6 +6,7 @@
 #include <petzval/imaging/distortion.h>
 #include <petzval/imaging/drawn_cells.h>
 #include <petzval/imaging/flat_blocks.h>
+#include <petzval/imaging/plane_sampling.h>
 #include <petzval/imaging/scene_aim.h>
 
 #include <cstddef>
