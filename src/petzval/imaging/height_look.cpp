@@ -43,7 +43,7 @@ HeightLook::HeightLook(const LightProfile& lens, std::optional<double> object_to
 }
 
 std::size_t HeightLook::step_before(double radius, double near_square) const {
-  // The ratio near by says about where; from there it is a few steps at most, or far.
+  // The ratio of the place before gives a guess, which is mostly right to a few steps.
   const double ratio = steps_[static_cast<std::size_t>(near_square * steps_per_square_)].samples_per_mm;
   const double height_mm = radius / ratio;
   const double guess = std::min(height_mm * height_mm, last_height_squared_) * steps_per_square_;
