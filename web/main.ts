@@ -501,7 +501,7 @@ class Page {
       cursor_mm: session.cursor_mm, plots: this.reporting ? shownPlots.map(([name]) => name) : [session.plot], picture: true};
     this.link.send(state);
     this.compare.show(state);
-    if (document.body.dataset.busy !== "1") document.body.dataset.busy = "1";
+    document.body.dataset.busy = "1";
   }
 
   private answered(): void {
