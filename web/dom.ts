@@ -29,6 +29,19 @@ export function s<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+/** Makes `old` like `wanted`, piece by piece where both have the same shape: the browser draws that sooner than new elements. */
+export function becomes(old: ChildNode, wanted: ChildNode): void {
+  if (old.nodeName !== wanted.nodeName || old.childNodes.length !== wanted.childNodes.length) return old.replaceWith(wanted);
+  if (old instanceof Element && wanted instanceof Element) {
+    for (const {name} of [...old.attributes]) if (!wanted.hasAttribute(name)) old.removeAttribute(name);
+    for (const {name, value} of wanted.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
+  } else if (old.nodeValue !== wanted.nodeValue) {
+    old.nodeValue = wanted.nodeValue;
+  }
+  const next = [...wanted.childNodes];
+  [...old.childNodes].forEach((child, i) => becomes(child, next[i]));
+}
+
 /** A number as people read it: at most so many digits that count, and a true minus sign. */
 export function shown(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined) return "–";

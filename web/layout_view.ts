@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lens from the side, with rays. Glass, stop and sensor can be taken by the pointer and moved.
-import {h, s, shown} from "./dom";
+import {becomes, h, s, shown} from "./dom";
 import {Incoming} from "./link";
 import {Lens} from "./model";
 
@@ -11,13 +11,14 @@ export interface LayoutListener {
   chosen(surface: number): void;
 }
 
-type Point = [number, number];
+/** z and y [mm] of one point after the other. */
+export type Line = number[];
 
 export class LayoutView {
   readonly element = h("div", {class: "layout-box", tabindex: "0", "aria-label": "layout of the lens"});
   private last: Incoming | null = null;
   private lens: Lens | null = null;
-  private way: Point[][] = [];
+  private way: Line[] = [];
   private scale = 1;
   private width = 0;  // asking the element for them would lay out the whole page
   private height = 0;
@@ -28,6 +29,12 @@ export class LayoutView {
       [this.width, this.height] = [entries[0].contentRect.width, entries[0].contentRect.height];
       this.draw();
     }).observe(this.element);
+    // Handles are brought up to date in place: what they move stands in them, not in listeners of their own.
+    this.element.addEventListener("pointerdown", event => {
+      const {stop, first, last} = (event.target as SVGElement).dataset;
+      if (stop !== undefined) this.begin(event, Number(stop), Number(stop), true);
+      if (first !== undefined) this.begin(event, Number(first), Number(last), false);
+    });
   }
 
   show(message: Incoming, lens: Lens): void {
@@ -38,7 +45,7 @@ export class LayoutView {
   }
 
   /** The way of a ghost in place of the rays of the picture; empty: none. */
-  showWay(way: Point[][]): void {
+  showWay(way: Line[]): void {
     if (way.length === 0 && this.way.length === 0) return;
     this.way = way;
     this.draw();
@@ -59,20 +66,26 @@ export class LayoutView {
     this.scale = Math.min((width - 2 * margin) / (z1 + lead), (height - margin - foot) / (2 * reach));
     const left = (width - this.scale * (z1 + lead)) / 2 + this.scale * lead, middle = (height - foot + margin / 2) / 2;
     const px = (z: number) => left + this.scale * z, py = (y: number) => middle - this.scale * y;
-    const path = (points: Point[]) => points.map(([z, y], i) => `${i ? "L" : "M"}${px(z).toFixed(2)} ${py(y).toFixed(2)}`).join("");
+    const short = (at: number) => Math.round(100 * at) / 100;
+    const path = (points: Line) => {
+      let d = "";
+      for (let i = 0; i < points.length; i += 2) d += `${i ? "L" : "M"}${short(px(points[i]))} ${short(py(points[i + 1]))}`;
+      return d;
+    };
 
+    const outlines = (data.elements as Line[]).map(outline => path(outline) + "Z");
     const svg = s("svg", {class: "layout", viewBox: `0 0 ${width} ${height}`, width, height});
     svg.append(s("path", {class: "axis", d: `M${px(-lead)} ${middle}H${px(z1) + 10}`}));
-    data.elements.forEach((outline: Point[]) => svg.append(s("path", {class: "glass", d: path(outline) + "Z"})));
+    for (const d of outlines) svg.append(s("path", {class: "glass", d}));
     svg.append(s("path", {class: "surface", d: data.surfaces.filter((each: any) => !each.stop).map((each: any) => path(each.profile)).join("")}));
     const rays = s("g", {class: this.way.length ? "rays ghost-way" : "rays"});
     // One path for all rays of a field: the browser then has a few things to draw in the frame of a move, not dozens.
     for (const field of this.way.length ? [{rays: this.way, colour: "var(--ghost)"}] : data.fields)
-      if (field.rays.length) rays.append(s("path", {class: "ray", d: (field.rays as Point[][]).map(path).join(""), stroke: field.colour, "data-rays": field.rays.length}));
+      if (field.rays.length) rays.append(s("path", {class: "ray", d: (field.rays as Line[]).map(path).join(""), stroke: field.colour, "data-rays": field.rays.length}));
     svg.append(rays);
     const tall = Math.max(data.image_height, reach * 0.2) * 1.04;
     svg.append(s("path", {class: "sensor", d: `M${px(z1)} ${py(tall)}V${py(-tall)}`}));
-    this.addHandles(svg, data, px, py, path, tall);
+    this.addHandles(svg, outlines, px(data.image_z), py(tall), py(-tall));
     // Above the glass, which may be where its edges are.
     data.surfaces.forEach((surface: any, i: number) => {
       if (surface.stop) svg.append(this.stopMark(px(surface.z), py, data.first_order.stop_semi_diameter_mm ?? surface.height, reach, i));
@@ -82,7 +95,10 @@ export class LayoutView {
       if (at) svg.append(s("path", {class: "blocked", d: path(at.profile)}));
     }
     svg.append(this.ruler(width, height));
-    this.element.replaceChildren(svg, this.legend(data));
+    const legend = this.legend(data), [oldSvg, oldLegend] = this.element.children;
+    if (!oldSvg) return this.element.append(svg, legend);
+    becomes(oldSvg, svg);
+    becomes(oldLegend, legend);
   }
 
   private stopMark(x: number, py: (y: number) => number, radius: number, reach: number, surface: number): SVGGElement {
@@ -90,37 +106,28 @@ export class LayoutView {
     const d = `M${x} ${py(far)}V${py(radius)}M${x - 4} ${py(radius)}h8M${x} ${py(-far)}V${py(-radius)}M${x - 4} ${py(-radius)}h8`;
     const group = s("g", {}, s("path", {class: "stop", d}));
     for (const side of [1, -1]) {
-      const grip = s("rect", {class: "handle vertical", x: x - 8, y: py(side * radius) - 8, width: 16, height: 16});
-      grip.append(s("title", {}, `stop, surface ${surface}: drag to open or close`));
-      grip.addEventListener("pointerdown", event => this.begin(event, surface, surface, true));
-      group.append(grip);
+      group.append(s("rect", {class: "handle vertical", x: x - 8, y: py(side * radius) - 8, width: 16, height: 16, "data-stop": surface},
+          s("title", {}, `stop, surface ${surface}: drag to open or close`)));
     }
     return group;
   }
 
   /** Elements that touch are cemented and move together. */
-  private addHandles(svg: SVGSVGElement, data: Incoming, px: (z: number) => number, py: (y: number) => number,
-      path: (points: Point[]) => string, tall: number): void {
+  private addHandles(svg: SVGSVGElement, outlines: string[], sensor: number, top: number, bottom: number): void {
     const surfaces = this.lens!.surfaces;
     let element = 0;
     for (let first = 0; first < surfaces.length; ++first) {
       if (!surfaces[first].glass) continue;
       let last = first;
       while (last < surfaces.length && surfaces[last].glass) ++last;
-      for (let i = first; i < last; ++i) {
-        const handle = s("path", {class: "handle", d: path(data.elements[element++] ?? []) + "Z"});
-        handle.append(s("title", {}, `surfaces ${first} to ${last}: drag along the axis`));
-        const from = first, to = last;
-        handle.addEventListener("pointerdown", event => this.begin(event, from, to, false));
-        svg.append(handle);
-      }
+      for (let i = first; i < last; ++i)
+        svg.append(s("path", {class: "handle", d: outlines[element++] ?? "", "data-first": first, "data-last": last},
+            s("title", {}, `surfaces ${first} to ${last}: drag along the axis`)));
       first = last;
     }
-    const z = px(data.image_z);
-    const grip = s("rect", {class: "handle", x: z - 7, y: py(tall), width: 14, height: py(-tall) - py(tall)});
-    grip.append(s("title", {}, "sensor: drag along the axis"));
-    grip.addEventListener("pointerdown", event => this.begin(event, surfaces.length, surfaces.length, false));
-    svg.append(grip);
+    const end = surfaces.length;
+    svg.append(s("rect", {class: "handle", x: sensor - 7, y: top, width: 14, height: bottom - top, "data-first": end, "data-last": end},
+        s("title", {}, "sensor: drag along the axis")));
   }
 
   private begin(event: PointerEvent, first: number, last: number, stop: boolean): void {

@@ -3,7 +3,7 @@
 import {commandLine, focusText} from "./command_line";
 import {choice, Slider} from "./controls";
 import {h, icon, icons, shown} from "./dom";
-import {LayoutView} from "./layout_view";
+import {LayoutView, Line} from "./layout_view";
 import {CompareView} from "./compare_view";
 import {Dropped, Incoming, Link, takeToken} from "./link";
 import {Ghost, ghostTable} from "./ghost_view";
@@ -447,7 +447,7 @@ class Page {
     this.buildControls();
   }
 
-  private way: [number, number][][] = [];
+  private way: Line[] = [];
   private toldOfGhost = "";
   private takeStray(message: Incoming): void {
     this.sky = message.sky;

@@ -117,12 +117,12 @@ TEST(Bench, PutsTheSunWhereItsAnglesSayAndFollowsOneGhost) {
   const json& rays = stray["way"];
   ASSERT_FALSE(rays.empty());
   for (const json& ray : rays) {
+    const auto z = [&](std::size_t point) { return ray[2 * point].get<double>(); };
+    const std::size_t points = ray.size() / 2;
     int turns = 0;
-    for (std::size_t i = 2; i < ray.size(); ++i)
-      turns += (ray[i][0].get<double>() > ray[i - 1][0].get<double>()) !=
-               (ray[i - 1][0].get<double>() > ray[i - 2][0].get<double>());
+    for (std::size_t i = 2; i < points; ++i) turns += (z(i) > z(i - 1)) != (z(i - 1) > z(i - 2));
     EXPECT_EQ(turns, 2) << "it is reflected twice";
-    EXPECT_NEAR(ray.back()[0].get<double>(), layout["image_z"].get<double>(), 1e-6);
+    EXPECT_NEAR(z(points - 1), layout["image_z"].get<double>(), 1e-5);
   }
   const json preview = page.next("picture");
   const double pitch_mm = preview["pitch_um"].get<double>() / 1000;

@@ -39,6 +39,12 @@ using Clock = std::chrono::steady_clock;
 /// Scenes that one page may drop: their files are kept as long as it is there.
 constexpr int most_dropped_scenes = 16;
 
+/// How long the browser has the processors for the rays before the rest is begun; it paints them in about as
+/// much if nothing runs beside it, and in three times as much otherwise.
+constexpr std::chrono::milliseconds rays_are_painted{4};
+/// How long nothing must come before the full picture is begun.
+constexpr std::chrono::milliseconds hand_rests{180};
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -262,7 +268,9 @@ void Bench::Impl::show(const BenchState& state) {
     }
     use.key = key;
   }
+  const bool new_rays = shown["layout"] != key;
   if (!stage(state.id, "layout", key, [&](const Context&) { show_layout(state); })) return;
+  if (new_rays) ask->rests(rays_are_painted);
   const auto picture = [&](const char* name, PictureQuality quality) {
     const auto scene = scenes.find(state.scene);
     // The picture knows itself whether it is new.
@@ -290,7 +298,7 @@ void Bench::Impl::show(const BenchState& state) {
   const auto stop = [this] { return ask->newer() || ask->ended(); };
   plots->let_quick_ones_pass(stop);
   if (state.picture && picture("preview", PictureQuality::preview)) {
-    if (!ask->rests()) throw Cancelled();
+    if (!ask->rests(hand_rests)) throw Cancelled();
     plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads, true});
     if (picture("picture", PictureQuality::full)) picture("finest", PictureQuality::finest);
   }

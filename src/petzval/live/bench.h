@@ -7,6 +7,7 @@
 #include <petzval/live/message.h>
 #include <petzval/trace/losses.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -46,7 +47,7 @@ struct LiveStart {
 struct BenchQuestions {
   std::function<bool()> newer;  ///< whether something waits that is newer than what is shown
   std::function<bool()> ended;  ///< whether nobody looks any more
-  std::function<bool()> rests;  ///< waits until the hand has rested; false if something came first
+  std::function<bool(std::chrono::milliseconds)> rests;  ///< waits; false if something came before the end
 };
 
 /// Stages: layout → psf → preview (few pixels, three bands) → picture → finest, and plots beside them. What

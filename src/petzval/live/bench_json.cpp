@@ -46,10 +46,15 @@ json axis_json(const PlotAxis& axis) {
           {"to", axis.to ? finite_or_null(*axis.to) : json()}};
 }
 
+/// z and y of one point after the other, to 0.01 um: finer than a screen shows of any lens, and soon written
+/// and read.
 json points_json(const std::vector<PlanePoint>& points) {
-  json list = json::array();
-  for (const PlanePoint& point : points)
-    if (std::isfinite(point[0]) && std::isfinite(point[1])) list.push_back({point[0], point[1]});
+  constexpr double steps_a_mm = 1e5;
+  json::array_t list;
+  list.reserve(2 * points.size());
+  for (const auto& [z, y] : points)
+    if (std::isfinite(z) && std::isfinite(y))
+      for (const double at : {z, y}) list.emplace_back(std::round(at * steps_a_mm) / steps_a_mm);
   return list;
 }
 

@@ -16,8 +16,6 @@ namespace {
 
 /// More messages than a page sends while one is looked at; more bytes than an upload and what comes with it.
 constexpr std::size_t most_waiting = 512, most_waiting_bytes = most_upload_bytes + 8 * most_message_bytes;
-/// How long nothing must come before the full picture is begun.
-constexpr std::chrono::milliseconds rest_of_the_hand{180};
 
 /// Pictures come one after the other: the memory of the last is kept for the next, until the hand rests.
 void keep_memory() {
@@ -110,9 +108,9 @@ void BenchWorker::show_newest(Bench& bench) {
   BenchQuestions ask;
   ask.newer = [this] { return something_new_.load(); };
   ask.ended = [this] { return ending_.load(); };
-  ask.rests = [this] {
+  ask.rests = [this](std::chrono::milliseconds time) {
     std::unique_lock lock(mutex_);
-    return !woken_.wait_for(lock, rest_of_the_hand, [this] { return ending_ || !waiting_.empty(); });
+    return !woken_.wait_for(lock, time, [this] { return ending_ || !waiting_.empty(); });
   };
   const BenchState state = *newest_;
   bench.show(state, threads_, ask);
