@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <petzval/numeric/sobol.h>
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace petzval {
 namespace {
@@ -32,6 +36,70 @@ TEST(Sobol, EveryElementaryIntervalHoldsOnePoint) {
       }
       EXPECT_EQ(boxes.size(), 1u << k) << seed << " " << a;
     }
+}
+
+/// Points of several sets together.
+std::vector<std::array<double, 4>> points_together(int sets, std::uint32_t count) {
+  std::vector<std::array<double, 4>> points;
+  for (int set = 0; set < sets; ++set)
+    for (std::uint32_t i = 0; i < count; ++i)
+      points.push_back(SobolSample(123456u, i, digital_shifts(set, sets)).next4());
+  return points;
+}
+
+// As digital_shifts() says: intervals that are all taken once, whatever the number of points; and boxes of
+// 2, 4 and 8 times the volume that a point has on average, each with as many points. Each set alone is as
+// good as one without a shift.
+TEST(Sobol, ShiftedSetsFillEachOthersGaps) {
+  for (const int sets : {2, 4, 8})
+    for (int k = 0; k <= 8; ++k) {
+      const std::uint32_t count = 1u << k;
+      const int all = static_cast<int>(count) * sets;
+      const auto points = points_together(sets, count);
+      for (const std::size_t d : {0, 1, 2, 3}) {
+        std::set<int> taken;
+        for (const auto& p : points) taken.insert(static_cast<int>(p[d] * all));
+        EXPECT_EQ(taken.size(), points.size()) << sets << " sets of " << count << ", dimension " << d;
+      }
+      for (int across = sets; across <= all; across *= 2) {
+        std::map<std::pair<int, int>, int> boxes;
+        for (const auto& p : points)
+          ++boxes[{static_cast<int>(p[0] * across / sets), static_cast<int>(p[1] * all / across)}];
+        for (const auto& [box, held] : boxes)
+          ASSERT_EQ(held, sets) << sets << " sets of " << count << ", " << across;
+      }
+      std::set<std::pair<int, int>> alone;
+      const int wide = 1 << k / 2, high = 1 << (k - k / 2);
+      for (auto p = points.end() - count; p != points.end(); ++p)
+        alone.emplace(static_cast<int>((*p)[0] * wide), static_cast<int>((*p)[1] * high));
+      EXPECT_EQ(alone.size(), count);
+    }
+}
+
+// Of a function that all sets see, four sets of 16 are quieter than four that do not know of each other,
+// which have a fourth of the variance of one.
+TEST(Sobol, ShiftedSetsAreQuieterTogether) {
+  const auto variance = [](auto&& sum_of) {
+    constexpr int seeds = 400;
+    double squares = 0;
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) squares += std::pow(sum_of(seed) - 1, 2) / seeds;
+    return squares;
+  };
+  const auto sum = [](std::uint32_t seed, std::uint32_t count, int set, int sets) {
+    double total = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto p = SobolSample(seed, i, digital_shifts(set, sets)).next3();
+      total += 8 * p[0] * p[1] * p[2] / count;
+    }
+    return total;
+  };
+  const double one_of_16 = variance([&](auto seed) { return sum(seed, 16, 0, 1); });
+  const double four_of_16 = variance([&](auto seed) {
+    double total = 0;
+    for (int set = 0; set < 4; ++set) total += sum(seed, 16, set, 4) / 4;
+    return total;
+  });
+  EXPECT_LT(four_of_16, 0.75 * one_of_16 / 4);
 }
 
 TEST(Sobol, SetsAndSeedsAreIndependent) {

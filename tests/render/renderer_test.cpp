@@ -372,9 +372,9 @@ TEST(Renderer, EndsAtTheNoiseThatIsAskedAndIsRightAboutIt) {
   options.seed = 77;
   const std::vector<double> truth = summed_over_bands(small.render_with(options, 4096));
   int before = 0;
-  for (const double wanted : {0.1, 0.05, 0.025}) {
+  for (const double wanted : {0.08, 0.04, 0.02}) {
     options.noise = wanted;
-    constexpr int seeds = 8;
+    constexpr int seeds = 16;
     double ratio = 0;
     int samples = 0;
     for (options.seed = 1; options.seed <= seeds; ++options.seed) {
@@ -399,7 +399,7 @@ TEST(Renderer, EndsAtTheNoiseThatIsAskedAndIsRightAboutIt) {
 TEST(Renderer, EndsAtTheSameNoiseOnAnyThreadsAndAfterAnInterruption) {
   const SmallPicture small;
   RenderOptions options;
-  options.noise = 0.1;
+  options.noise = 0.07;
   const Rendering whole = small.render_with(options, 2000);
   ASSERT_GT(whole.samples_per_pixel, 32);
   {

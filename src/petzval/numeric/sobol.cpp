@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/numeric/sobol.h>
 
+#include <algorithm>
+#include <bit>
+
 namespace petzval {
 
 namespace {
@@ -89,7 +92,38 @@ std::uint32_t scrambled_in_reverse(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
+constexpr int most_shift_bits = 3;
+/// For two, four and eight sets: by dimension, the shift (in reverse) of each binary digit of a set's number.
+/// Those of dimension 0 are columns of Pascal's triangle modulo two, so that no interval is taken twice. The
+/// others were searched digit by digit for small t of the digital nets that 2^n points of all sets are
+/// together (Niederreiter 1987), by the ranks of their generator matrices up to 12 digits: first of
+/// dimensions 0 and 1, and 0 to 2, which choose and sample lights; then of 2 and 3, and of the other pairs.
+constexpr std::uint32_t all = 0xffffffff;
+constexpr std::uint32_t shift_digits[most_shift_bits][dimensions][most_shift_bits]{
+    {{all}, {all}, {all}, {all}},
+    {{all, 0xaaaaaaaa}, {0xbdb, 0x56d}, {0xb55, 0x5fe}, {0xab6, 0xf5b}},
+    {{all, 0xaaaaaaaa, 0xcccccccc}, {0xd55, 0xbf2, 0x4cb}, {0x692, 0xfa9, 0x5cd}, {0x539, 0xcdf, 0xbaa}}};
+
+using ShiftTables = std::array<std::array<DigitalShifts, 1 << most_shift_bits>, most_shift_bits + 1>;
+
+constexpr ShiftTables make_shifts() {
+  ShiftTables tables{};
+  for (std::size_t bits = 1; bits <= most_shift_bits; ++bits)
+    for (std::size_t set = 0; set < 1u << bits; ++set)
+      for (std::size_t d = 0; d < dimensions; ++d)
+        for (std::size_t bit = 0; bit < bits; ++bit)
+          if (set >> bit & 1) tables[bits][set][d] ^= shift_digits[bits - 1][d][bit];
+  return tables;
+}
+
+constexpr ShiftTables shifts_by_bits = make_shifts();
+
 }  // namespace
+
+const DigitalShifts& digital_shifts(int set, int sets) {
+  const auto bits = std::min<std::size_t>(std::bit_width(static_cast<unsigned>(sets - 1)), most_shift_bits);
+  return shifts_by_bits[bits][static_cast<std::size_t>(set) & ((1u << bits) - 1)];
+}
 
 std::uint32_t sobol(std::uint32_t index, int dimension) {
   return reversed_bits(reversed_sobol(reversed_bits(index), dimension));
@@ -106,7 +140,7 @@ std::array<double, Count> SobolSample::next() {
   std::array<double, Count> point;
   for (std::size_t d = 0; d < Count; ++d)
     point[d] = unit * reversed_bits(scrambled_in_reverse(
-                          reversed_sobol(shuffled, static_cast<int>(d)),
+                          reversed_sobol(shuffled, static_cast<int>(d)) ^ (*shifts_)[d],
                           hashed(set_seed, 0x9e3779b9u + static_cast<std::uint32_t>(d))));
   return point;
 }

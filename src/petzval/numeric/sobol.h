@@ -23,6 +23,16 @@ inline std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
 }
 
+/// Of each of the four dimensions, digits by which a set of points is shifted before it is scrambled.
+using DigitalShifts = std::array<std::uint32_t, 4>;
+
+/// Shifts of point set `set` out of `sets` that share their seeds, so that they fill each other's gaps: the
+/// first 2^n points of each together have one point in each of 2^n·sets intervals of every dimension (if
+/// `sets` is a power of two), and nearly so in boxes of dimensions 0 to 2. Each set is a Sobol sequence for
+/// itself. Sets `most_shifted_sets` apart have the same shifts: give them other seeds.
+constexpr int most_shifted_sets = 8;
+const DigitalShifts& digital_shifts(int set, int sets);
+
 /// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four
 /// dimensions are Sobol points stratified together; different sets are independent permutations of the same
 /// samples (Burley, "Practical hash-based Owen scrambling", JCGT 9 (2020) 4).
@@ -31,7 +41,8 @@ inline std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
 ///     const auto [u, v] = sample.next2();
 class SobolSample {
  public:
-  SobolSample(std::uint32_t seed, std::uint32_t index) : seed_(seed), index_(index) {}
+  SobolSample(std::uint32_t seed, std::uint32_t index, const DigitalShifts& shifts = digital_shifts(0, 1))
+      : shifts_(&shifts), seed_(seed), index_(index) {}
 
   double next1();
   std::array<double, 2> next2();
@@ -44,6 +55,7 @@ class SobolSample {
   template <std::size_t Count>
   std::array<double, Count> next();
 
+  const DigitalShifts* shifts_;
   std::uint32_t seed_, index_, set_ = 0;
 };
 

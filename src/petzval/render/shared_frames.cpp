@@ -83,8 +83,7 @@ class SharedFrames {
     const auto number = static_cast<std::uint32_t>(group * halves + half);
     const SharedSamples samples{
         group, paths_.own, paths_.every,
-        hashed(static_cast<std::uint32_t>(task_.options.seed),
-               static_cast<std::uint32_t>(task_.options.seed >> 32) ^ (number + 1) * 0x9e3779b9u)};
+        GroupSamples::of(groups(), group, task_.options.seed, static_cast<std::uint32_t>(half) + 1)};
     std::atomic<std::size_t> done{0};
     for (std::size_t begin = 0; begin < tiles_.size(); begin += shared_tiles_at_once) {
       std::vector<SharedTileResult> results(std::min(shared_tiles_at_once, tiles_.size() - begin));

@@ -69,13 +69,13 @@ class SharedTile {
     for (int row = tile_.top; row < tile_.bottom; ++row)
       for (int column = tile_.left; column < tile_.right; ++column) {
         const auto number = static_cast<std::uint32_t>(row * task_.sensor.columns + column);
-        const std::uint32_t seed = hashed(number, samples_.stream), turn = hashed(seed, 0x68e31da4u);
+        const std::uint32_t seed = hashed(number, samples_.numbers.stream), turn = hashed(seed, 0x68e31da4u);
         if ((at + turn) % every != 0) continue;
         for (int i = 0; i < samples_.own; ++i) {
           // One sequence through all frames: what is alike in them is stratified together.
           const std::uint32_t index =
               at / every * static_cast<std::uint32_t>(samples_.own) + static_cast<std::uint32_t>(i);
-          numbers.emplace_back(seed, index);
+          numbers.emplace_back(seed, index, *samples_.numbers.shifts);
           const auto [x, y, u, v] = numbers.back().next4();
           places.push_back(task_.sampling.place({column, row}, x, y, u, v));
           places.back().hero = static_cast<int>((turn / every + index) % static_cast<std::uint32_t>(lanes_));

@@ -4,6 +4,7 @@
 
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/film/film_sampling.h>
+#include <petzval/render/group_samples.h>
 #include <petzval/render/renderer.h>
 
 #include <array>
@@ -28,7 +29,7 @@ struct SharedTask {
 /// Which paths of a tile: `own` of each pixel, in every `every`-th frame from a random one on.
 struct SharedSamples {
   int group = 0, own = 1, every = 1;
-  std::uint32_t stream = 0;
+  GroupSamples numbers = {};
 };
 
 /// What has landed on a pixel, over all paths: light [W·m⁻²·nm⁻¹], and how much a uniform field of unit

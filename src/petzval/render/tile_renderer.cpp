@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/stop.h>
+#include <petzval/render/group_samples.h>
 #include <petzval/render/tile_renderer.h>
 
 #include <algorithm>
@@ -54,9 +55,7 @@ class TileRenderer {
 
   void take_samples(int group, SampleRange range) {
     lanes_ = task_.world.groups.lanes(group);
-    stream_ = hashed(static_cast<std::uint32_t>(task_.options.seed),
-                     static_cast<std::uint32_t>(task_.options.seed >> 32) ^
-                         static_cast<std::uint32_t>(group) * 0x9e3779b9u);
+    of_group_ = GroupSamples::of(task_.world.groups, group, task_.options.seed);
     samples_.clear(), places_.clear(), times_.clear(), numbers_.clear();
     each_ = range.last - range.first;
     const std::size_t count = tile_.size() * static_cast<std::size_t>(each_);
@@ -76,14 +75,15 @@ class TileRenderer {
         inside ? static_cast<std::uint32_t>(pixel.row * task_.sensor.columns + pixel.column)
                : hashed(static_cast<std::uint32_t>(pixel.row), static_cast<std::uint32_t>(pixel.column));
     // The halves of a picture whose noise is wanted are independent of each other.
-    const std::uint32_t seed = hashed(number, half_ ? ~stream_ : stream_);
-    samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
+    const std::uint32_t stream = half_ ? ~of_group_.stream : of_group_.stream;
+    const std::uint32_t seed = hashed(number, stream);
+    samples_.emplace_back(seed, static_cast<std::uint32_t>(index), *of_group_.shifts);
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
     // The same in all pixels: even light stays even. And the paths are those without waves.
     if (waves_)
       numbers_.push_back(
-          SobolSample(hashed(half_ ? ~stream_ : stream_, wave_stream), static_cast<std::uint32_t>(index))
+          SobolSample(hashed(stream, wave_stream), static_cast<std::uint32_t>(index), *of_group_.shifts)
               .next4());
     if (const auto& motion = task_.options.motion)
       times_.push_back(motion->opens(pixel.row + 0.5, task_.sensor.rows) +
@@ -218,9 +218,9 @@ class TileRenderer {
   const WaveImage* waves_;
   PixelWindow tile_;
   bool half_;
-  int each_ = 0;              ///< samples of a pixel in a batch
-  int lanes_ = 0;             ///< of the group whose samples are taken
-  std::uint32_t stream_ = 0;  ///< of its random numbers
+  int each_ = 0;   ///< samples of a pixel in a batch
+  int lanes_ = 0;  ///< of the group whose samples are taken
+  GroupSamples of_group_;
   Film& whole_;
   Film film_;                            ///< of the tile
   std::vector<SourceLight> of_sources_;  ///< of one path, if wanted
