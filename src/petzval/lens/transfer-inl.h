@@ -13,6 +13,7 @@
 #include <petzval/lens/transfer_limits.h>
 
 #include <cstddef>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
@@ -30,6 +31,9 @@ struct CarriedRay {
   PlaneRay<V> front;
   V stop_x, stop_y, others_sq;
 };
+
+/// Of the 16 of most processors, some are for terms and coefficients.
+constexpr std::size_t most_sums_in_registers = 10;
 
 /// The three variables of a ray, and the turn that made them.
 template <class V>
@@ -64,19 +68,34 @@ HWY_INLINE TransferArguments<V> arguments_of(const TransferPolynomials<T>& p, co
   return result;
 }
 
+/// Outputs from `first` on, whose sums stay in registers. \param next  makes or finds a term.
+template <std::size_t first, std::size_t... output, class V, class T, class Next>
+HWY_INLINE void sum_terms(const TransferPolynomials<T>& p, const Next& next, V* out,
+                          std::index_sequence<output...>) {
+  const T* row = p.coefficients.data() + first;
+  V sum[] = {constant<V>(static_cast<double>(row[output]))...};
+  for (std::size_t k = 1; k < p.steps.size(); ++k) {
+    row += p.outputs;
+    const V term = next(k);
+    ((sum[output] = mul_add(constant<V>(static_cast<double>(row[output])), term, sum[output])), ...);
+  }
+  ((out[first + output] = sum[output]), ...);
+}
+
 template <std::size_t outputs, class V, class T>
 HWY_INLINE void evaluate_terms(const TransferPolynomials<T>& p, const TransferArguments<V>& arguments,
                                V (&out)[outputs]) {
   V term[most_transfer_terms];
   term[0] = constant<V>(1);
-  const T* row = p.coefficients.data();
-  for (std::size_t o = 0; o < outputs; ++o) out[o] = constant<V>(static_cast<double>(row[o]));
-  for (std::size_t k = 1; k < p.steps.size(); ++k) {
-    term[k] = term[p.steps[k].from] * arguments.of[p.steps[k].variable];
-    row += p.outputs;
-    for (std::size_t o = 0; o < outputs; ++o)
-      out[o] = mul_add(constant<V>(static_cast<double>(row[o])), term[k], out[o]);
-  }
+  const auto made = [&](std::size_t k) HWY_ATTR {
+    return term[k] = term[p.steps[k].from] * arguments.of[p.steps[k].variable];
+  };
+  const auto found = [&](std::size_t k) HWY_ATTR { return term[k]; };
+  constexpr std::size_t at_once = outputs <= most_sums_in_registers ? outputs : outputs / 2;
+  static_assert(outputs - at_once <= most_sums_in_registers);
+  sum_terms<0>(p, made, out, std::make_index_sequence<at_once>());
+  if constexpr (outputs > at_once)
+    sum_terms<at_once>(p, found, out, std::make_index_sequence<outputs - at_once>());
 }
 
 /// From outputs to a place and a direction, in the axes of the lens.
