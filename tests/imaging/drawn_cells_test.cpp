@@ -234,5 +234,18 @@ TEST(DetailSpectrum, OfADrawingGoesOnBelowItsSamples) {
     EXPECT_NEAR(coarse.variances[level] / fine.variances[level + 3], 1, 0.1) << level;
 }
 
+/// Squares of 16 samples: of pairs of samples along a row, a sixteenth has an edge in its middle, and so
+/// along a column, wherever pairs begin.
+TEST(DetailSpectrum, SeesEdgesThatLieBetweenSquaresOfEverySize) {
+  const Scene board = checkerboard_chart(chart(256, 192, {550}), 16);
+  const double white = double(board.drawing()->figures[0].radiance[0]);
+  const DetailSpectrum detail = detail_of(board, 0);
+  ASSERT_TRUE(detail.drawn);
+  std::size_t samples = 0;  // the level of squares of two samples
+  for (double side = detail.finest_side; side < 1; side *= 2) ++samples;
+  const double across = 15.0 / 127, down = 11.0 / 95, crossed = across + down - across * down;
+  EXPECT_NEAR(detail.variances[samples] / (white * white / 4), crossed / 2, 1e-6);
+}
+
 }  // namespace
 }  // namespace petzval

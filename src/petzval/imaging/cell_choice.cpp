@@ -131,18 +131,21 @@ double contrast_of(const DetailSpectrum& detail, double cells_per_sample) {
 
 }  // namespace
 
-DetailSpectrum detail_of(const Scene& scene, int band) {
-  const std::span<const float> light = scene.band(band);
-  auto columns = static_cast<std::size_t>(scene.columns()), rows = static_cast<std::size_t>(scene.rows());
+namespace {
+
+/// DetailSpectrum of squares from a sample of the first row and column on.
+DetailSpectrum detail_from(std::size_t first, const Scene& scene, int band) {
+  std::size_t stride = static_cast<std::size_t>(scene.columns());
+  std::size_t columns = stride - first, rows = static_cast<std::size_t>(scene.rows()) - first;
   std::vector<float> finer;  // means of the squares before
-  const float* values = light.data();
+  const float* values = scene.band(band).data() + first * (stride + 1);
   DetailSpectrum detail;
   while (columns >= 2 && rows >= 2) {
     const std::size_t across = columns / 2, down = rows / 2;
     std::vector<float> means(across * down);
     std::vector<double> squares(down), sums(down);
     parallel_for(down, [&](std::size_t row) {
-      const float *upper = values + 2 * row * columns, *lower = upper + columns;
+      const float *upper = values + 2 * row * stride, *lower = upper + stride;
       for (std::size_t column = 0; column < across; ++column) {
         const std::array<double, 4> four{double(upper[2 * column]), double(upper[2 * column + 1]),
                                          double(lower[2 * column]), double(lower[2 * column + 1])};
@@ -161,9 +164,20 @@ DetailSpectrum detail_of(const Scene& scene, int band) {
     detail.mean = sum / double(across * down);
     finer = std::move(means);
     values = finer.data();
-    columns = across;
+    columns = stride = across;
     rows = down;
   }
+  return detail;
+}
+
+}  // namespace
+
+DetailSpectrum detail_of(const Scene& scene, int band) {
+  DetailSpectrum detail = detail_from(0, scene, band);
+  // Edges of charts like to lie between squares of every size: others begin a sample later.
+  const DetailSpectrum beside = detail_from(1, scene, band);
+  for (std::size_t i = 0; i < beside.variances.size(); ++i)
+    detail.variances[i] = (detail.variances[i] + beside.variances[i]) / 2;
   if (scene.drawing() == nullptr || detail.variances.empty()) return detail;
   detail.drawn = true;
   for (int step = 0; step < steps_below_samples; ++step) {
@@ -178,6 +192,12 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
   const PixelTaps taps = pixel_taps(site, cells, path);
   // Where in its octave the detail of a square's side lies [cycles a side], evenly.
   constexpr std::array<double, 4> places{0.28, 0.34, 0.40, 0.46};
+  // Of an edge, whose power falls with the square of frequency, squares also see what is coarser: a step
+  // anywhere in them has h/(6L) of variance, and 1/(2π²f²L) holds h/(π²L) from 1/(4h) to 1/(2h).
+  const double of_octave = detail.drawn ? 6 / (pi * pi) : 1;
+  const auto power_at = [&](double place) { return detail.drawn ? 1 / (place * place) : 1; };
+  double power = 0;
+  for (const double place : places) power += power_at(place);
   double error = 0, finer = 0, light = detail.mean * detail.mean;
   const double finest_cpp = std::max(finest_shown_cpp, samples_per_pixel / 2);
   double side = detail.finest_side;  // of the smallest square [samples]
@@ -185,7 +205,7 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
     for (const double place : places) {
       const double cycles = place / side, f = cycles * samples_per_pixel;
       const auto add = [&](double contrast, double at) {
-        const double share = variance / double(places.size()) * contrast * contrast;
+        const double share = variance * of_octave * power_at(place) / power * contrast * contrast;
         (detail.drawn && at > finest_cpp ? finer : error) +=
             share * std::pow(taps_error(taps, site, path, at, mtf), 2);
         light += share * std::pow(site.transform(at, 0).real() * mtf(at), 2);
