@@ -129,16 +129,13 @@ double contrast_of(const DetailSpectrum& detail, double cells_per_sample) {
   return cells_per_sample * std::sqrt(detail.variances[finest] / of_white) / detail.mean;
 }
 
-}  // namespace
-
-namespace {
-
-/// DetailSpectrum of squares from a sample of the first row and column on.
+/// DetailSpectrum of squares that begin with this row and column.
 DetailSpectrum detail_from(std::size_t first, const Scene& scene, int band) {
   std::size_t stride = static_cast<std::size_t>(scene.columns());
   std::size_t columns = stride - first, rows = static_cast<std::size_t>(scene.rows()) - first;
   std::vector<float> finer;  // means of the squares before
-  const float* values = scene.band(band).data() + first * (stride + 1);
+  const std::span<const float> light = scene.band(band);
+  const float* values = light.data() + std::min(first * (stride + 1), light.size());
   DetailSpectrum detail;
   while (columns >= 2 && rows >= 2) {
     const std::size_t across = columns / 2, down = rows / 2;
@@ -174,7 +171,7 @@ DetailSpectrum detail_from(std::size_t first, const Scene& scene, int band) {
 
 DetailSpectrum detail_of(const Scene& scene, int band) {
   DetailSpectrum detail = detail_from(0, scene, band);
-  // Edges of charts like to lie between squares of every size: others begin a sample later.
+  // Edges of charts often lie between squares of every size; squares that begin a sample later hold them.
   const DetailSpectrum beside = detail_from(1, scene, band);
   for (std::size_t i = 0; i < beside.variances.size(); ++i)
     detail.variances[i] = (detail.variances[i] + beside.variances[i]) / 2;
@@ -192,8 +189,9 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
   const PixelTaps taps = pixel_taps(site, cells, path);
   // Where in its octave the detail of a square's side lies [cycles a side], evenly.
   constexpr std::array<double, 4> places{0.28, 0.34, 0.40, 0.46};
-  // Of an edge, whose power falls with the square of frequency, squares also see what is coarser: a step
-  // anywhere in them has h/(6L) of variance, and 1/(2π²f²L) holds h/(π²L) from 1/(4h) to 1/(2h).
+  // The power of an edge falls with the square of frequency, so that squares also hold what is coarser than
+  // their octave: one step in L has a mean variance of h/(6L) in squares of side 2h, but its power 1/(2π²f²L)
+  // adds up to h/(π²L) from f = 1/(4h) to 1/(2h).
   const double of_octave = detail.drawn ? 6 / (pi * pi) : 1;
   const auto power_at = [&](double place) { return detail.drawn ? 1 / (place * place) : 1; };
   double power = 0;

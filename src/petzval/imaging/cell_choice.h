@@ -12,7 +12,7 @@ namespace petzval {
 struct DetailSpectrum {
   double mean = 0;
   /// The variance within squares of 2, 4, 8 … times the finest side that is not within those of half the
-  /// side.
+  /// side: the mean of squares from the first sample on and of those from the second on.
   std::vector<double> variances;
   double finest_side = 1;  ///< [samples]
   bool drawn = false;      ///< figures, not straight lines between samples

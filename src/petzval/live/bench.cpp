@@ -39,8 +39,8 @@ using Clock = std::chrono::steady_clock;
 /// Scenes that one page may drop: their files are kept as long as it is there.
 constexpr int most_dropped_scenes = 16;
 
-/// How long the browser has the processors for the rays before the rest is begun; it paints them in about as
-/// much if nothing runs beside it, and in three times as much otherwise.
+/// For so long the server leaves the processors to the browser, which draws the rays: it takes three times as
+/// long beside the server's work.
 constexpr std::chrono::milliseconds rays_are_painted{4};
 /// How long nothing must come before the full picture is begun.
 constexpr std::chrono::milliseconds hand_rests{180};

@@ -93,12 +93,12 @@ std::uint32_t scrambled_in_reverse(std::uint32_t x, std::uint32_t seed) {
 }
 
 constexpr int most_shift_bits = 3;
+constexpr std::uint32_t all = 0xffffffff;
 /// For two, four and eight sets: by dimension, the shift (in reverse) of each binary digit of a set's number.
 /// Those of dimension 0 are columns of Pascal's triangle modulo two, so that no interval is taken twice. The
 /// others were searched digit by digit for small t of the digital nets that 2^n points of all sets are
 /// together (Niederreiter 1987), by the ranks of their generator matrices up to 12 digits: first of
 /// dimensions 0 and 1, and 0 to 2, which choose and sample lights; then of 2 and 3, and of the other pairs.
-constexpr std::uint32_t all = 0xffffffff;
 constexpr std::uint32_t shift_digits[most_shift_bits][dimensions][most_shift_bits]{
     {{all}, {all}, {all}, {all}},
     {{all, 0xaaaaaaaa}, {0xbdb, 0x56d}, {0xb55, 0x5fe}, {0xab6, 0xf5b}},

@@ -26,11 +26,12 @@ inline std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
 /// Of each of the four dimensions, digits by which a set of points is shifted before it is scrambled.
 using DigitalShifts = std::array<std::uint32_t, 4>;
 
-/// Shifts of point set `set` out of `sets` that share their seeds, so that they fill each other's gaps: the
-/// first 2^n points of each together have one point in each of 2^n·sets intervals of every dimension (if
-/// `sets` is a power of two), and nearly so in boxes of dimensions 0 to 2. Each set is a Sobol sequence for
-/// itself. Sets `most_shifted_sets` apart have the same shifts: give them other seeds.
 constexpr int most_shifted_sets = 8;
+/// Shifts of point set `set` out of `sets` that share their seeds, so that they fill each other's gaps: the
+/// first 2^n points of each together have one point in each of 2^n·sets intervals of every dimension, and
+/// nearly so in boxes of dimensions 0 to 2. That holds if `sets` is a power of two, and up to 4096 points of
+/// all sets; with more, dimensions 1 to 3 gain no finer intervals. Each set is a Sobol sequence for itself.
+/// Sets `most_shifted_sets` apart have the same shifts: give them other seeds.
 const DigitalShifts& digital_shifts(int set, int sets);
 
 /// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four
