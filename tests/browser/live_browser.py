@@ -14,7 +14,9 @@ from selenium.webdriver.support.ui import WebDriverWait
 PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
-return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id);"""
+return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id && !page.stale && !page.lastLayout);"""
+# What was shown last may have changed the sizes of other parts, which are drawn anew in the next frame.
+NEXT_FRAME = "const done = arguments[0]; requestAnimationFrame(() => setTimeout(done));"
 
 SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
 slider.value = arguments[1]; slider.dispatchEvent(new Event("input")); slider.dispatchEvent(new Event("change"));"""
@@ -36,7 +38,6 @@ step();
 
 def sweep(browser, gaps, count):
     """Moves these air gaps of the lens, without waiting for what comes of it, and then waits."""
-    browser.driver.set_script_timeout(600)
     browser.driver.execute_async_script(SWEEP, gaps, count)
     browser.settle()
 
@@ -99,6 +100,7 @@ class Browser:
             options.add_experimental_option("prefs", {"download.default_directory": str(downloads),
                                                       "profile.default_content_setting_values.automatic_downloads": 1})
         self.driver = webdriver.Chrome(service=Service(driver), options=options)
+        self.driver.set_script_timeout(PATIENCE_S)
         self.resize(width, height)
 
     def resize(self, width, height):
@@ -117,6 +119,7 @@ class Browser:
     def settle(self):
         """Waits until all that was asked for is shown, the finest picture too."""
         self.until("everything is shown", lambda: self.run(SETTLED))
+        self.driver.execute_async_script(NEXT_FRAME)
 
     def session(self):
         return self.run("return JSON.parse(JSON.stringify(window.petzvalPage.session))")

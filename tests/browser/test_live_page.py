@@ -150,19 +150,20 @@ class Controls(LivePage):
         self.assertEqual(self.browser.session()["lens"]["surfaces"][2]["thickness_mm"], before, "one drag is one step")
 
     def test_a_drawing_brought_up_to_date_is_that_drawn_anew(self):
-        drawing = "return document.querySelector('.layout-box').innerHTML"
-        find = self.browser.driver.find_element
+        both = """const layout = window.petzvalPage.layout, updated = layout.element.innerHTML;
+            layout.element.replaceChildren();
+            layout.draw();
+            return [updated, layout.element.innerHTML];"""
         # The same shape with other places, another stop, a field without rays, and a lens of another shape.
         for change in ["session.lens.surfaces[1].thickness_mm += 1", "session.lens.surfaces[0].stop = false; session.lens.surfaces[2].stop = true",
                        "session.lens.fields.values[2] = 60", "session.lens.surfaces.push({...session.lens.surfaces[2], radius_mm: 80, stop: false, thickness_mm: 60})"]:
             with self.subTest(change):
                 self.browser.run(f"window.petzvalPage.alterLens(() => {{ const session = window.petzvalPage.session; {change} }}, '')")
-                self.browser.until("rays", lambda: self.browser.run("const page = window.petzvalPage; return page.layout.last.id === page.id"))
-                updated = self.browser.run(drawing)
-                self.browser.run("const layout = window.petzvalPage.layout; layout.element.replaceChildren(); layout.draw()")
-                self.assertEqual(updated, self.browser.run(drawing))
+                self.browser.settle()
+                updated, anew = self.browser.run(both)
+                self.assertEqual(updated, anew)
         self.assertIn("no ray", self.browser.text(".layout-box .legend"))
-        stop = find(By.CSS_SELECTOR, ".layout .handle.vertical")
+        stop = self.browser.driver.find_element(By.CSS_SELECTOR, ".layout .handle.vertical")
         self.assertIn("surface 2", stop.find_element(By.TAG_NAME, "title").get_attribute("textContent"))
         self.assertEqual(stop.get_attribute("data-stop"), "2")
 
