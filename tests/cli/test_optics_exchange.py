@@ -42,9 +42,10 @@ class Exchange(ProgramTest):
         self.assertLess(np.abs(inner - native["psf"]).max(), psf_rounding * native["psf"].max())
 
     def assert_same_picture(self, table, tolerance):
-        difference = self.picture(table) - self.picture("native.h5")
-        level = np.sqrt((self.picture("native.h5") ** 2).sum())
-        self.assertLess(np.sqrt((difference ** 2).sum()) / level, tolerance)
+        # A row more of a PSF may lay out the fast methods otherwise.
+        exact = ("--method", "exact", "--supersample", "2")
+        ours, native = self.picture(table, "a.npy", "studio", *exact), self.picture("native.h5", "b.npy", "studio", *exact)
+        self.assertLess(np.sqrt(((ours - native) ** 2).sum() / (native ** 2).sum()), tolerance)
 
 
 class Iset(Exchange):

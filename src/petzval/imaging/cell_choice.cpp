@@ -17,7 +17,6 @@ namespace petzval {
 
 namespace {
 
-constexpr int most_cells = 8;
 constexpr int steps_below_samples = 6;  ///< of drawings
 constexpr double finest_shown_cpp = 0.5;
 
@@ -220,7 +219,7 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
     side *= 2;
   }
   if (!(light > 0)) return {};
-  return {std::sqrt(error / light), std::sqrt(finer / light)};
+  return {std::sqrt((error + finer) / light), std::sqrt(finer / light)};
 }
 
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
@@ -239,9 +238,9 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   };
   if (asked != 0) return with(asked);
   // One cell holds little more than what the tolerance of a preview asks for.
-  const double tolerance = options.product.tolerance;
   CellChoice choice = with(options.is_preview() ? 1 : 2);
-  while (choice.cells < most_cells && choice.sampling.error > tolerance / 2) choice = with(choice.cells + 1);
+  while (choice.cells < most_cells_per_pixel && !choice.sampling.is_within(options.product.tolerance))
+    choice = with(choice.cells + 1);
   return choice;
 }
 

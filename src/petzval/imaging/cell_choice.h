@@ -24,13 +24,19 @@ DetailSpectrum detail_of(const Scene& scene, int band);
 /// A relative L2 error of a picture.
 struct SamplingError {
   double error = 0;
-  double finer = 0;  ///< what detail of a drawing finer than pixels can hold adds, which `error` leaves out
+  double finer = 0;  ///< the part of detail of a drawing finer than pixels can hold
+
+  /// Whether the rest of the tolerance is left to the blur, that is half of it. Finer detail may be all that
+  /// the sum of squares then allows, for its estimate is larger than what it is.
+  bool is_within(double tolerance) const {
+    return error * error - finer * finer <= tolerance * tolerance / 4 &&
+           error * error <= 0.75 * tolerance * tolerance;
+  }
 };
 
 /// The relative L2 error of a picture whose pixels are so many cells wide, whatever the blur method: detail
 /// that cells cannot hold, and kernels' samples that mistake one frequency for another. The edges of a
-/// drawing have no end of detail; what is promised of it ends at half a cycle a pixel, or a
-/// sample if that is finer.
+/// drawing have no end of detail: what is beyond half a cycle a pixel, and a sample, is `finer`.
 ///
 /// \param samples_per_pixel  of the scene, along a side. \param mtf  of the lens over cycles/pixel.
 SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
@@ -46,8 +52,8 @@ struct CellChoice {
 };
 
 /// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and
-/// through the table's MTF, RMS over the frame, is within half of the tolerance: 2 at least, but for
-/// tolerances of 3·10⁻³ and more, and 8 at most.
+/// through the table's MTF, RMS over the frame, is within the tolerance (SamplingError::is_within): 2 at
+/// least, but for tolerances of 3·10⁻³ and more, and most_cells_per_pixel at most.
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options);
 

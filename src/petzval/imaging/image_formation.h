@@ -34,13 +34,16 @@ enum class BlurMethod {
   exact      ///< one PSF a cell, added up directly
 };
 
+constexpr int most_cells_per_pixel = 16;  ///< along a side
+
 struct ImagingOptions {
   BlurMethod method = BlurMethod::product;
   ProductOptions product = {};
   SectionOptions sections = {};  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
   RadialFit fit = {};  ///< of distortion and g_source over image height
-  /// S: source cells are S × S to a pixel, 1 to 16; 0: as many as the tolerance needs (choose_cells).
+  /// S: source cells are S × S to a pixel, 1 to most_cells_per_pixel; 0: as many as the tolerance needs
+  /// (choose_cells).
   int supersample = 0;
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
@@ -84,7 +87,7 @@ struct ImagingReport {
   ProductPlan product = {};
   int scene_points_per_cell = 1;  ///< parts of a cell whose means over the scene are taken: this squared
   double sampling_error = 0;      ///< of the cells, estimated for the middle band
-  double finer_detail_error = 0;  ///< what finer detail of a chart than pixels can hold adds
+  double finer_detail_error = 0;  ///< its part of detail of a chart finer than pixels can hold
   /// Light farther from its chief ray than this was formed on coarser pixels [pixels]; 0: none was.
   int tail_pixels = 0;
   double table_error = 0;  ///< LensDataTable::interpolation_error
