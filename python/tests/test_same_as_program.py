@@ -36,8 +36,8 @@ def test_image_by_plans_of_ones_own(program, camera):
     scene = pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650])
     program.run("image", *SHOT, "--nodes", 3, "--tile", 12, "-o", "light.npy")
     assert np.array_equal(np.load(program.folder / "light.npy"), camera.image(scene, nodes=3, tile=12).values)
-    program.run("image", *SHOT, "--method", "sections", "--section", 24, "--transform", 64, "-o", "light.npy")
-    light = camera.image(scene, method="sections", section=24, transform=64)
+    program.run("image", *SHOT, "--method", "sections", "--section", 24, "--transform", 64, "--supersample", 3, "-o", "light.npy")
+    light = camera.image(scene, method="sections", section=24, transform=64, supersample=3)
     assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
 
 

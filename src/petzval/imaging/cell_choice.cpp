@@ -239,7 +239,7 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   if (asked != 0) return with(asked);
   // One cell holds little more than what the tolerance of a preview asks for.
   CellChoice choice = with(options.is_preview() ? 1 : 2);
-  while (choice.cells < most_cells_per_pixel && !choice.sampling.is_within(options.product.tolerance))
+  while (choice.cells < ImagingOptions::most_cells && !choice.sampling.is_within(options.product.tolerance))
     choice = with(choice.cells + 1);
   return choice;
 }

@@ -53,7 +53,7 @@ struct CellChoice {
 
 /// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and
 /// through the table's MTF, RMS over the frame, is within the tolerance (SamplingError::is_within): 2 at
-/// least, but for tolerances of 3·10⁻³ and more, and most_cells_per_pixel at most.
+/// least, but for tolerances of 3·10⁻³ and more, and ImagingOptions::most_cells at most.
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options);
 

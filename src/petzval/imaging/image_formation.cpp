@@ -130,9 +130,9 @@ LightPath ImagingOptions::light_path(int points) const {
 }
 
 void ImagingOptions::validate() const {
-  if (supersample < 0 || supersample > most_cells_per_pixel)
-    throw InputError(fmt::format("supersampling of {}: 1 to {} is right, or 0 to choose", supersample,
-                                 most_cells_per_pixel));
+  if (supersample < 0 || supersample > most_cells)
+    throw InputError(
+        fmt::format("supersampling of {}: 1 to {} is right, or 0 to choose", supersample, most_cells));
   if (tail_pixels < 0)
     throw InputError(fmt::format("tails from {} pixels on: 0 or more would be right", tail_pixels));
   check_photosite(photosite);

@@ -34,17 +34,15 @@ enum class BlurMethod {
   exact      ///< one PSF a cell, added up directly
 };
 
-constexpr int most_cells_per_pixel = 16;  ///< along a side
-
 struct ImagingOptions {
   BlurMethod method = BlurMethod::product;
   ProductOptions product = {};
   SectionOptions sections = {};  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
   RadialFit fit = {};  ///< of distortion and g_source over image height
-  /// S: source cells are S × S to a pixel, 1 to most_cells_per_pixel; 0: as many as the tolerance needs
-  /// (choose_cells).
+  /// S: source cells are S × S to a pixel, 1 to most_cells; 0: as many as the tolerance needs (choose_cells).
   int supersample = 0;
+  static constexpr int most_cells = 16;
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
   /// Of `product`: where a PSF reaches farther than twice so many pixels, the light beyond that many is
