@@ -83,15 +83,15 @@ def srgb(light):
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def write_png(path, codes, bits):
-    """Grey, ISO/IEC 15948, with the chunk sRGB."""
+def write_png(path, codes, bits, colours=(b"sRGB", b"\0")):
+    """Grey, ISO/IEC 15948, with this chunk for what the codes mean."""
     def chunk(name, payload):
         return struct.pack(">I", len(payload)) + name + payload + struct.pack(">I", zlib.crc32(name + payload))
 
     whole = np.round(codes * (2 ** bits - 1)).astype(">u2" if bits == 16 else "u1")
     lines = b"".join(b"\0" + row.tobytes() for row in whole)
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", *codes.shape[::-1], bits, 0, 0, 0, 0)) +
-                     chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
+                     chunk(*colours) + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
 LUMINANCE = """16 11 10 16 24 40 51 61 12 12 14 19 26 58 60 55 14 13 16 24 40 57 69 56 14 17 22 29 51 87 80 62

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Speed and errors of `petzval sfr` on what people photograph, beside the truth, and nine pictures of its own making. Figures of
-MTF Mapper 0.7.38 on such pictures, from another day and machine, stand beside. `bench/ruler_table.py build/release/bin/petzval`"""
+"""Speed and errors of `petzval sfr` on what people photograph, beside the truth, and nine pictures of its own making. MTF Mapper reads
+the same pictures where its program is named; else its figures of another day and machine stand beside.
+`bench/ruler_table.py build/release/bin/petzval [mtf_mapper]`"""
 
 import csv
 import itertools
@@ -9,13 +10,14 @@ import json
 import math
 import pathlib
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
-from hard_photographs import true_mtf50
+from hard_photographs import true_mtf50, write_png
 
 OPTICS = ["--f-number", 8, "--wavelength", 550, "--pixel-pitch", 4.73]
 
@@ -38,10 +40,30 @@ class Bench:
         edges = json.loads(self.run("sfr", name, "--json", *more))["edges"]
         return edges, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
-    def errors(self, values, *more):
-        np.save(self.folder / "photo.npy", values)
-        edges, _ = self.edges("photo.npy", *more)
-        return np.array([100 * (edge["mtf50_cpp"] / true_mtf50(edge["angle_deg"]) - 1) for edge in edges if edge["mtf50_cpp"]])
+    def mtf50(self, picture, *more):
+        """MTF50 [cycles/pixel] and angle [degrees] of every edge of a PNG, and the processor time [s]."""
+        edges, seconds = self.edges(picture, "--transfer", "linear", *more)
+        return [(edge["mtf50_cpp"], edge["angle_deg"]) for edge in edges if edge["mtf50_cpp"]], seconds
+
+
+class MtfMapper:
+    def __init__(self, program, folder):
+        self.program, self.folder = str(pathlib.Path(program).resolve()), folder
+
+    def mtf50(self, picture, *more):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        values = self.folder / "edge_mtf_values.txt"
+        values.write_text("")  # it stops where it finds no edge
+        subprocess.run([self.program, picture, ".", "-q", *more], cwd=self.folder, check=False, stdout=subprocess.DEVNULL)
+        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        rows = [list(map(float, line.split())) for line in values.read_text().splitlines() if line[:1] not in "#"]
+        # Beside the middle of an edge stands a corner near its end.
+        return [(row[3], math.degrees(math.atan2(row[5] - row[2], row[4] - row[1]))) for row in rows], seconds
+
+
+def errors(edges):
+    """In per cent."""
+    return np.array([100 * (mtf50 / true_mtf50(angle_deg) - 1) for mtf50, angle_deg in edges])
 
 
 def square(x, y, side, angle_deg):
@@ -80,43 +102,51 @@ def nine(bench):
     return worst
 
 
-def main(program):
+def main(program, mapper=None):
     with tempfile.TemporaryDirectory() as name:
-        bench = Bench(program, pathlib.Path(name))
-        print(f"{'what':<58} {'here':>24}   MTF Mapper 0.7.38")
+        folder = pathlib.Path(name)
+        bench = Bench(program, folder)
+        mapper = MtfMapper(mapper, folder) if mapper else None
+        print(f"{'what':<58} {'here':>24}   MTF Mapper" + ("" if mapper else " 0.7.38, another day"))
         row = lambda what, here, there="": print(f"{what:<58} {here:>24}   {there}", flush=True)  # noqa: E731
+
+        def both(what, picture, there, says, here=(), mapped=(), room=0.1):
+            """A row of what is to be said of both measurements of a picture in linear light; of the quickest of three."""
+            write_png(folder / "photo.png", room + (1 - 2 * room) * picture, 16, (b"gAMA", struct.pack(">I", 100000)))
+            quickest = lambda ruler, *more: min((ruler.mtf50("photo.png", *more) for _ in range(3)), key=lambda done: done[1])  # noqa: E731
+            row(what, says(*quickest(bench, *here)), says(*quickest(mapper, *mapped)) if mapper else there)
+
+        time = lambda edges, seconds: f"{seconds:.2f} s, {len(edges)}"  # noqa: E731
+        worst = lambda edges, _: f"{np.abs(errors(edges)).max():.2f} %, {len(edges)}" if edges else "none"  # noqa: E731
+        scatter = lambda edges, _: f"{errors(edges).std():.2f} % ({errors(edges).mean():+.2f}), {len(edges)}" if edges else "none"  # noqa: E731
         for across, there in ((3, "0.08 s"), (5, "0.09 s"), (7, "0.14 s"), (20, "")):
-            bench.target("t.npy", squares(across, 40, 80), 80 * across)
-            edges, seconds = bench.edges("t.npy")
-            row(f"{len(edges)} edges of 40 px, processor time", f"{seconds:.2f} s", there)
+            both(f"{4 * across * across} edges of 40 px, processor time", bench.target("t.npy", squares(across, 40, 80), 80 * across), there, time)
         bench.run("image", "checkerboard:10", "--lens", "wide-22mm", "--f-number", 8, "--sensor", "1200x900@20", "-o", "board.npy")
         edges, seconds = bench.edges("board.npy")
         row("a board through wide-22mm, processor time", f"{seconds:.1f} s, {len(edges)} edges")
         for radius, there in ((4000, "0.340"), (1000, "0.335")):
-            bench.target("arc.npy", [arc(radius)], 120)
-            edges, _ = bench.edges("arc.npy", "--roi", "10,10,100,100")
-            row(f"an edge of radius {radius} px, MTF50 (true 0.337)", f"{edges[0]['mtf50_cpp']:.4f}", there)
+            arced = bench.target("arc.npy", [arc(radius)], 120)[10:110, 10:110]
+            both(f"an edge of radius {radius} px, MTF50 (true 0.337)", arced, there, lambda edges, _: f"{edges[0][0]:.4f}" if edges else "none",
+                 ("--roi", "0,0,100,100"), ("--single-roi",))
         flat = bench.target("flat.npy", [square(120, 120, 100, 5)], 240)
         y, x = np.indices(flat.shape)
         for fall, there in ((0.01, "1.1 %"), (0.05, "1.8 %"), (0.1, "2.3 %")):
-            worst = max(np.abs(bench.errors(flat * (1 - fall * (x * math.cos(a) + y * math.sin(a)) / 100))).max() for a in (0, 1, 2.5, 4))
-            row(f"light that falls by {100 * fall:g} % over 100 px, worst", f"{worst:.2f} %", there)
+            for a in (0, 1, 2.5, 4):
+                fading = flat * (1 - fall * (x * math.cos(a) + y * math.sin(a)) / 100)
+                both(f"light that falls by {100 * fall:g} % over 100 px towards {a} rad, worst", fading / fading.max(), there, worst)
         many = bench.target("many.npy", squares(7, 60, 120), 840)
         random = np.random.default_rng(1)
-        for snr, there in ((100, "0.7 %"), (50, "1.6 %"), (20, "3.8 %"), (10, "6.5 %")):
-            errors = bench.errors(many + random.normal(0, 1 / snr, many.shape))
-            row(f"SNR {snr}: scatter (bias), {len(errors)} edges of 60 px", f"{errors.std():.2f} % ({errors.mean():+.2f})", there)
+        for snr, room, there in ((100, 0.1, "0.7 %"), (50, 0.1, "1.6 %"), (20, 0.2, "3.8 %"), (10, 0.3, "6.5 %")):
+            both(f"SNR {snr}: scatter (bias), edges of 60 px", many + random.normal(0, 1 / snr, many.shape), there, scatter, room=room)
         near = bench.target("near.npy", squares(8, 40, 80), 640)
-        errors = bench.errors(near)
-        row("40-px squares 80 px apart, worst, edges of 256", f"{np.abs(errors).max():.2f} %, {len(errors)}", "1.7 %, 256")
-        errors = bench.errors(near + random.normal(0, 0.02, near.shape))
-        row("the same at SNR 50", f"{np.abs(errors).max():.2f} %, {len(errors)}", "6.1 %")
+        both("40-px squares 80 px apart, worst, edges of 256", near, "1.7 %, 256", worst)
+        both("the same at SNR 50", near + random.normal(0, 0.02, near.shape), "6.1 %", worst)
         for angle in (15, 30):
             bench.run("target", "--rectangle", f"100x100@{angle}", *OPTICS, "-o", "iso.npy")
             edges, _ = bench.edges("iso.npy", "--method", "iso")
             row(f"--method iso at {angle} degrees (true {true_mtf50(angle):.3f})", f"{edges[0]['mtf50_cpp']:.4f}")
-        row("nine pictures of our own making, worst SFR to Nyquist", f"{nine(bench):.1e}", "4.6e-3 to 9.3e-3")
+        row("nine pictures of our own making, worst SFR to Nyquist", f"{nine(bench):.1e}", "4.6e-3 to 9.3e-3, another day")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -5,11 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <map>
 #include <utility>
 #include <vector>
 
 namespace petzval {
+
+namespace {
+
+/// The first level above a value, or the last; from the second on. Most often levels are evenly spaced.
+std::span<const double>::iterator next_level(std::span<const double> levels, double value) {
+  const double steps = static_cast<double>(levels.size() - 1);
+  const double guess = std::floor((value - levels.front()) / (levels.back() - levels.front()) * steps) + 1;
+  const auto at = static_cast<std::size_t>(std::clamp(guess, 1.0, steps));
+  if (levels[at - 1] <= value && value < levels[at]) return levels.begin() + static_cast<std::ptrdiff_t>(at);
+  return std::upper_bound(levels.begin() + 1, levels.end() - 1, value);
+}
+
+}  // namespace
 
 QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<const double> values,
                                      std::span<const double> variance) {
@@ -19,39 +31,47 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
   double carried = 0;
   for (int k = 1; k <= harmonics; ++k) carried += 1.0 / (k * k);
   const double scale = pi * pi / 6 / carried;
-  std::vector<double> place;
-  std::map<long, std::vector<std::size_t>> samples_by_cell;
+  // What is left makes less than 1e-11 of the variance of some thousand pixels.
+  constexpr double negligible = 1e-7;
+  const auto first_harmonic = [](double noise2) { return std::exp(-2 * pi * pi * noise2); };
+  std::vector<std::pair<long, std::size_t>> by_cell;
+  std::vector<double> noise2;  // of each sample [steps²]
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto above = std::upper_bound(levels.begin() + 1, levels.end() - 1, values[i]);
+    const auto above = next_level(levels, values[i]);
     const double low = *(above - 1), step = *above - low;
     // Beyond the ends the steps go on.
-    place.push_back(static_cast<double>(above - 1 - levels.begin()) + (values[i] - low) / step);
+    const double place = static_cast<double>(above - 1 - levels.begin()) + (values[i] - low) / step;
+    by_cell.emplace_back(std::lround(std::floor(place * cells_a_step)), i);
     step_.push_back(step);
-    samples_by_cell[std::lround(std::floor(place.back() * cells_a_step))].push_back(i);
+    noise2.push_back(std::max(0.0, variance[i] / (step * step) - 1.0 / 12));
   }
-  for (auto& [index, samples] : samples_by_cell) {
-    double noise2 = 0;  // in steps
-    for (const std::size_t i : samples)
-      noise2 +=
-          std::max(0.0, variance[i] / (step_[i] * step_[i]) - 1.0 / 12) / static_cast<double>(samples.size());
-    const double first_harmonic = std::exp(-2 * pi * pi * noise2);
-    // What is left makes less than 1e-11 of the variance of some thousand pixels.
-    if (constexpr double negligible = 1e-7; first_harmonic < negligible) continue;
+  if (values.empty() || first_harmonic(std::ranges::min(noise2)) < negligible) return;
+  std::ranges::sort(by_cell);
+  for (const auto& [index, sample] : by_cell) order_.push_back(sample);
+  for (std::size_t first = 0, last = 0; first < by_cell.size(); first = last) {
+    const long index = by_cell[first].first;
+    double sum = 0;
+    for (last = first; last < by_cell.size() && by_cell[last].first == index; ++last)
+      sum += noise2[order_[last]];
+    const double mean_noise2 = sum / static_cast<double>(last - first);
+    const double left_of_first = first_harmonic(mean_noise2);
+    if (left_of_first < negligible) continue;
     const double x = (static_cast<double>(index) + 0.5) / cells_a_step;
     Cell cell;
+    cell.first = first, cell.count = last - first;
     cell.window = static_cast<int>(std::floor(x));
     // Half cosines, whose squares sum to 1.
     cell.lower = std::cos(0.5 * pi * (x - cell.window));
     cell.upper = std::sin(0.5 * pi * (x - cell.window));
     const std::complex<double> once = std::polar(1.0, 2 * pi * x);
     std::complex<double> turn = std::sqrt(0.5 * scale) / pi;
+    double left = 1, next = left_of_first;  // of harmonic k: that of the first to the power k²
     for (int k = 1; k <= harmonics; ++k) {
       turn *= once;
-      const double amplitude = std::exp(-2 * pi * pi * k * k * noise2) / k;
-      cell.turn.segment<2>(2 * (k - 1)) << amplitude * turn.real(), amplitude * turn.imag();
+      left *= next, next *= left_of_first * left_of_first;
+      cell.turn.segment<2>(2 * (k - 1)) << left / k * turn.real(), left / k * turn.imag();
     }
     cells_.push_back(cell);
-    samples_.push_back(std::move(samples));
   }
 }
 
@@ -87,6 +107,29 @@ class QuantisationNoise::SparseSums {
   std::vector<std::size_t> touched_;
 };
 
+bool QuantisationNoise::is_alone(std::size_t cell) const {
+  const int window = cells_[cell].window;
+  return (cell == 0 || cells_[cell - 1].window + 1 < window) &&
+         (cell + 1 == cells_.size() || window + 1 < cells_[cell + 1].window);
+}
+
+void QuantisationNoise::add_rows(const Cell& cell, const AddRow& add_row, std::vector<double>& sum) const {
+  std::ranges::fill(sum, 0.0);
+  for (const std::size_t i : std::span(order_).subspan(cell.first, cell.count))
+    add_row(i, step_[i], sum.data());
+}
+
+void QuantisationNoise::add_spread_of_one(const Cell& cell, const AddRow& add_row, std::vector<double>& sum,
+                                          Eigen::MatrixXd& covariance) const {
+  add_rows(cell, add_row, sum);
+  const double variance = cell.turn.matrix().squaredNorm();
+  for (std::size_t j = 0; j < sum.size(); ++j) {
+    if (sum[j] == 0) continue;
+    double* const column = covariance.col(static_cast<Eigen::Index>(j)).data();
+    for (std::size_t i = j; i < sum.size(); ++i) column[i] += variance * sum[j] * sum[i];
+  }
+}
+
 void QuantisationNoise::add_spread(const AddRow& add_row, Eigen::MatrixXd& covariance) const {
   if (cells_.empty()) return;
   const auto size = static_cast<std::size_t>(covariance.rows());
@@ -100,13 +143,16 @@ void QuantisationNoise::add_spread(const AddRow& add_row, Eigen::MatrixXd& covar
   std::vector<double> sum(size);
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Cell& cell = cells_[c];
+    if (is_alone(c)) {
+      add_spread_of_one(cell, add_row, sum, covariance);
+      continue;
+    }
     // Between values that lie far apart there is nothing.
     while (window < cell.window) {
       if (here.empty() && next.empty()) window = cell.window - 1;
       close_one();
     }
-    std::ranges::fill(sum, 0.0);
-    for (const std::size_t i : samples_[c]) add_row(i, step_[i], sum.data());
+    add_rows(cell, add_row, sum);
     for (std::size_t j = 0; j < size; ++j) {
       if (sum[j] == 0) continue;
       here.add(j, cell.lower * sum[j], cell.turn);

@@ -40,13 +40,21 @@ class QuantisationNoise {
   class SparseSums;
   /// Samples that lie in the same sixteenth of a step.
   struct Cell {
-    int window = 0;               ///< the step that they lie above
-    double lower = 0, upper = 0;  ///< share in this window and in the next
-    Harmonics turn;               ///< amplitude · exp(2πikx)
+    std::size_t first = 0, count = 0;  ///< of its samples, in `order_`
+    int window = 0;                    ///< the step that they lie above
+    double lower = 0, upper = 0;       ///< share in this window and in the next
+    Harmonics turn;                    ///< amplitude · exp(2πikx)
   };
-  std::vector<std::vector<std::size_t>> samples_;  ///< of each cell
-  std::vector<double> step_;                       ///< size of a step at each sample
-  std::vector<Cell> cells_;                        ///< by rising value
+  /// Whether no other cell shares a window with this one.
+  bool is_alone(std::size_t cell) const;
+  /// Adds what its rounding spreads to the lower half of a matrix; `sum` as long as that.
+  void add_spread_of_one(const Cell& cell, const AddRow& add_row, std::vector<double>& sum,
+                         Eigen::MatrixXd& covariance) const;
+  void add_rows(const Cell& cell, const AddRow& add_row, std::vector<double>& sum) const;
+
+  std::vector<std::size_t> order_;  ///< samples by rising cell
+  std::vector<double> step_;        ///< size of a step at each sample
+  std::vector<Cell> cells_;         ///< by rising value
 };
 
 }  // namespace petzval
