@@ -112,7 +112,7 @@ def main(program, mapper=None):
 
         def both(what, picture, there, says, here=(), mapped=(), room=0.1):
             """A row of what is to be said of both measurements of a picture in linear light; of the quickest of three."""
-            write_png(folder / "photo.png", room + (1 - 2 * room) * picture, 16, (b"gAMA", struct.pack(">I", 100000)))
+            write_png(folder / "photo.png", np.clip(room + (1 - 2 * room) * picture, 0, 1), 16, (b"gAMA", struct.pack(">I", 100000)))
             quickest = lambda ruler, *more: min((ruler.mtf50("photo.png", *more) for _ in range(3)), key=lambda done: done[1])  # noqa: E731
             row(what, says(*quickest(bench, *here)), says(*quickest(mapper, *mapped)) if mapper else there)
 
@@ -136,7 +136,7 @@ def main(program, mapper=None):
                 both(f"light that falls by {100 * fall:g} % over 100 px towards {a} rad, worst", fading / fading.max(), there, worst)
         many = bench.target("many.npy", squares(7, 60, 120), 840)
         random = np.random.default_rng(1)
-        for snr, room, there in ((100, 0.1, "0.7 %"), (50, 0.1, "1.6 %"), (20, 0.2, "3.8 %"), (10, 0.3, "6.5 %")):
+        for snr, room, there in ((100, 0.1, "0.7 %"), (50, 0.1, "1.6 %"), (20, 0.2, "3.8 %"), (10, 0.2, "6.5 %")):
             both(f"SNR {snr}: scatter (bias), edges of 60 px", many + random.normal(0, 1 / snr, many.shape), there, scatter, room=room)
         near = bench.target("near.npy", squares(8, 40, 80), 640)
         both("40-px squares 80 px apart, worst, edges of 256", near, "1.7 %, 256", worst)
