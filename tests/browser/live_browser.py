@@ -15,7 +15,7 @@ PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id && !page.stale && !page.lastLayout);"""
-# What was shown last may have changed the sizes of other parts, which are drawn anew in the next frame.
+# Movements of a pointer reach the page with a frame; and what is shown may change the sizes of other parts, which are drawn anew in the next.
 NEXT_FRAME = "const done = arguments[0]; requestAnimationFrame(() => setTimeout(done));"
 
 SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
@@ -118,6 +118,7 @@ class Browser:
 
     def settle(self):
         """Waits until all that was asked for is shown, the finest picture too."""
+        self.driver.execute_async_script(NEXT_FRAME)
         self.until("everything is shown", lambda: self.run(SETTLED))
         self.driver.execute_async_script(NEXT_FRAME)
 
