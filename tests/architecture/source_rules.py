@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds text that has no place in the repository: source files without their licence line, folders of one
-machine, temporary files that two processes could share, and marks of unfinished work. Reads the files that git
+machine, temporary files that two processes could share, marks of unfinished work, and types of one name in two
+headers. Reads the files that git
 knows, or, without git, the whole tree."""
 
 import pathlib
@@ -21,6 +22,23 @@ FORBIDDEN = [
     # take a pattern that ends in six of these letters.
     (re.compile(r"^(?!.*X{6}).*(temp_directory_pat[h]\(|\bTempDi[r]\()"), "names a temporary file that others may name too"),
 ]
+
+
+# Of types that a header defines outside of others, beside the namespaces that it opens.
+DEFINITION = re.compile(r"^(?:struct|class)\s+(?:\w+\(\w+\)\s+)?(\w+)\s*(?:final\s*)?(?::[^:].*)?\{", re.MULTILINE)
+NAMESPACE = re.compile(r"^namespace\s+([\w:]+)\s*\{", re.MULTILINE)
+
+
+def repeated_types(headers):
+    """Types that two headers define, given as {path: text}. A linker takes the functions of one for those of the other."""
+    seen, faults = {}, []
+    for path, text in headers.items():
+        namespace = "::".join(NAMESPACE.findall(text))
+        for name in DEFINITION.findall(text):
+            other = seen.setdefault((namespace, name), path)
+            if other != path:
+                faults.append(f"{path}: {namespace}::{name} stands in {other} too")
+    return faults
 
 
 def is_source(path, first_line):
@@ -52,14 +70,16 @@ def project_files(root):
 
 
 def find_faults(root):
-    faults = []
+    faults, headers = [], {}
     for path in project_files(root):
         try:
             text = path.read_bytes().decode()
         except UnicodeDecodeError:
             continue  # pictures and packed data
         faults += [f"{path.relative_to(root)}:{number}: {complaint}" for number, complaint in text_faults(path, text)]
-    return faults
+        if path.suffix == ".h":
+            headers[path.relative_to(root)] = text
+    return faults + repeated_types(headers)
 
 
 def main():

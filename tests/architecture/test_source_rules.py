@@ -40,6 +40,13 @@ class SourceRules(unittest.TestCase):
             self.assertEqual(len(self.faults("a.cpp", LICENCE + mark + "\n")), 1, mark)
         self.assertEqual(self.faults("a.cpp", LICENCE + "#if 1\n"), [])
 
+    def test_types_of_one_name(self):
+        here, there = ("namespace petzval {\nstruct Outline {\n  int a;\n};\n}\n", "namespace petzval {\nclass Outline final : public Line {\n};\n}\n")
+        self.assertEqual(len(source_rules.repeated_types({"a.h": here, "b.h": there})), 1)
+        inner = "namespace petzval::render {\nclass Outline {\n};\n}\n"
+        uses = "namespace petzval {\nclass Outline;\nstruct Line {\n  struct Outline {};\n};\nclass Outline::Part {\n};\n}\n"
+        self.assertEqual(source_rules.repeated_types({"a.h": here, "b.h": inner, "c.h": uses}), [])
+
     def test_a_tree_without_git(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)

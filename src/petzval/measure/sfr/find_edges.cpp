@@ -90,7 +90,7 @@ void choose_part(FoundEdge& edge, double greatest_reach, double noise) {
 /// Sides of all outlines by where they lie, so that what is near a place is found without looking at all.
 class SideGrid {
  public:
-  explicit SideGrid(const std::vector<Outline>& outlines) {
+  explicit SideGrid(const std::vector<TargetOutline>& outlines) {
     for (std::size_t o = 0; o < outlines.size(); ++o)
       for (std::size_t s = 0; s < outlines[o].sides(); ++s) {
         const OutlineSide side = outlines[o].side(s);
@@ -147,7 +147,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr double least_reach_px = 4;
   const Plane drawn = quiet(plane);
   const double noise = noise_share(plane);
-  std::vector<Outline> outlines;
+  std::vector<TargetOutline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     std::vector<ContourPoint> corners = straightened(contour, options.tolerance_px);
     if (corners.size() >= 2) outlines.push_back({std::move(corners), contour.closed});
@@ -156,7 +156,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   FoundEdges found;
   for (std::size_t o = 0; o < outlines.size(); ++o)
     for (const Stretch& stretch : stretches_of(outlines[o])) {
-      const Outline& outline = outlines[o];
+      const TargetOutline& outline = outlines[o];
       const std::size_t sides = outline.sides(), last = stretch.first + stretch.count - 1;
       FoundEdge edge;
       edge.from = outline.side(stretch.first).from, edge.to = outline.side(last % sides).to;

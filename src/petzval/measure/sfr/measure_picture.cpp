@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/measure/sfr/chart_frame.h>
+#include <petzval/measure/sfr/chart_mapping.h>
 #include <petzval/measure/sfr/find_edges.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/missing_target.h>
@@ -160,7 +160,7 @@ class Measurement {
 
  private:
   void place_on_chart(std::vector<MeasuredEdge>& edges) const try {
-    const ChartFrame frame(guide_, (*request_.chart_mm)[0], (*request_.chart_mm)[1]);
+    const ChartMapping frame(guide_, (*request_.chart_mm)[0], (*request_.chart_mm)[1]);
     for (MeasuredEdge& edge : edges) {
       const EdgeLine& line = edge.exact.line;
       const auto [x, y] = frame.on_chart(line.centre_x, line.centre_y);

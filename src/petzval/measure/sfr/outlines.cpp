@@ -140,7 +140,7 @@ std::vector<ContourPoint> straightened(const LevelContour& contour, double toler
   return sharpened(points, kept, contour.closed);
 }
 
-std::vector<Stretch> stretches_of(const Outline& outline) {
+std::vector<Stretch> stretches_of(const TargetOutline& outline) {
   constexpr double smooth = 8 * pi / 180, most = 25 * pi / 180;
   const std::size_t sides = outline.sides();
   const auto turn_before = [&](std::size_t side) {

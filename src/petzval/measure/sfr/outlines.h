@@ -15,7 +15,7 @@ struct OutlineSide {
 };
 
 /// The outlines of a target, as corners joined by straight lines.
-struct Outline {
+struct TargetOutline {
   std::vector<ContourPoint> corners;
   bool closed = false;
   std::size_t sides() const { return corners.size() - (closed ? 0 : 1); }
@@ -35,6 +35,6 @@ std::vector<ContourPoint> straightened(const LevelContour& contour, double toler
 
 /// All of an outline's sides. Those that meet at less than 8°, and turn by less than 25° in all, are one
 /// stretch.
-std::vector<Stretch> stretches_of(const Outline& outline);
+std::vector<Stretch> stretches_of(const TargetOutline& outline);
 
 }  // namespace petzval

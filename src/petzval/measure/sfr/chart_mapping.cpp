@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/measure/sfr/chart_frame.h>
+#include <petzval/measure/sfr/chart_mapping.h>
 #include <petzval/measure/sfr/level_contours.h>
 #include <petzval/measure/sfr/quiet_plane.h>
 #include <petzval/target/printed_chart.h>
@@ -95,7 +95,7 @@ Eigen::Matrix3d homography(const std::array<ChartMark, 4>& from, const std::arra
 
 }  // namespace
 
-ChartFrame::ChartFrame(const Plane& plane, double width_mm, double height_mm) {
+ChartMapping::ChartMapping(const Plane& plane, double width_mm, double height_mm) {
   if (!(width_mm > 0 && height_mm > 0 && std::isfinite(width_mm) && std::isfinite(height_mm)))
     throw InputError(fmt::format("a chart of {:g} x {:g} mm: its width and height in mm, above 0, are right",
                                  width_mm, height_mm));
@@ -124,12 +124,12 @@ ChartFrame::ChartFrame(const Plane& plane, double width_mm, double height_mm) {
   if (!chart_of_picture_.allFinite()) throw InputError("the chart's four marks lie on a line");
 }
 
-std::array<double, 2> ChartFrame::on_chart(double x_px, double y_px) const {
+std::array<double, 2> ChartMapping::on_chart(double x_px, double y_px) const {
   const Eigen::Vector3d place = chart_of_picture_ * Eigen::Vector3d(x_px, y_px, 1);
   return {place.x() / place.z(), place.y() / place.z()};
 }
 
-Eigen::Matrix2d ChartFrame::pixels_per_mm(double x_mm, double y_mm) const {
+Eigen::Matrix2d ChartMapping::pixels_per_mm(double x_mm, double y_mm) const {
   const Eigen::Vector3d place = picture_of_chart_ * Eigen::Vector3d(x_mm, y_mm, 1);
   Eigen::Matrix2d result;
   for (int i = 0; i < 2; ++i)
@@ -138,7 +138,7 @@ Eigen::Matrix2d ChartFrame::pixels_per_mm(double x_mm, double y_mm) const {
   return result;
 }
 
-double ChartFrame::per_mm(const EdgeLine& edge) const {
+double ChartMapping::per_mm(const EdgeLine& edge) const {
   const auto [x, y] = on_chart(edge.centre_x, edge.centre_y);
   // A wave with the vector k in the picture has the vector Jᵀ k on the chart.
   return (pixels_per_mm(x, y).transpose() *

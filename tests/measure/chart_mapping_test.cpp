@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/measure/sfr/chart_frame.h>
+#include <petzval/measure/sfr/chart_mapping.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/sharpest_place.h>
 #include <petzval/target/printed_chart.h>
@@ -50,7 +50,7 @@ PicturePlanes photograph_of(const TargetScene& chart, const Pinhole& pinhole) {
 
 // Wanted before measuring: places to 0.1 mm (a third of a pixel here), sharpness on the chart to 0.5 %, the
 // bounds of edges measured in the picture being 0.1 % and perspective not linear over an edge.
-TEST(ChartFrame, FindsEdgesWhereTheyStandOnTheChart) {
+TEST(ChartMapping, FindsEdgesWhereTheyStandOnTheChart) {
   const TargetScene chart = printed_chart("slanted-edges", chart_width_mm, chart_height_mm);
   for (const Pinhole& pinhole :
        {Pinhole{}, Pinhole{25, 0, 3}, Pinhole{-20, 15, -8}, Pinhole{10, -25, 95}, Pinhole{0, 0, 180}}) {
@@ -94,12 +94,12 @@ TEST(ChartFrame, FindsEdgesWhereTheyStandOnTheChart) {
   }
 }
 
-TEST(ChartFrame, SaysHowManyMarksAreMissing) {
+TEST(ChartMapping, SaysHowManyMarksAreMissing) {
   TargetScene chart = printed_chart("slanted-edges", chart_width_mm, chart_height_mm);
   chart.polygons.pop_back(), chart.polygons.pop_back();  // ring and dot of the last mark
   const PicturePlanes picture = photograph_of(chart, {});
   try {
-    ChartFrame(picture.planes[0], chart_width_mm, chart_height_mm);
+    ChartMapping(picture.planes[0], chart_width_mm, chart_height_mm);
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("3 of the chart's four marks"), std::string::npos)

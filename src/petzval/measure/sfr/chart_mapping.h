@@ -12,11 +12,11 @@ namespace petzval {
 
 /// A flat chart seen in perspective: places on the chart [mm from its upper left corner, x right, y down] and
 /// in the picture [pixels] by a homography. Distortion of the lens is not a part of it.
-class ChartFrame {
+class ChartMapping {
  public:
   /// By the four marks of chart_marks(), which are looked for in the picture. \throws InputError for
   /// sizes that are not positive, and where not all of them are seen.
-  ChartFrame(const Plane& plane, double width_mm, double height_mm);
+  ChartMapping(const Plane& plane, double width_mm, double height_mm);
 
   /// \returns x and y on the chart [mm].
   std::array<double, 2> on_chart(double x_px, double y_px) const;
