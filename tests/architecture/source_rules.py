@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds text that has no place in the repository: source files without their licence line, folders of one
 machine, temporary files that two processes could share, marks of unfinished work, and types of one name in two
-headers. Reads the files that git
-knows, or, without git, the whole tree."""
+headers. Reads the files that git knows, or, without git, the whole tree."""
 
 import pathlib
 import re
@@ -24,7 +23,7 @@ FORBIDDEN = [
 ]
 
 
-# Of types that a header defines outside of others, beside the namespaces that it opens.
+# Types that a header defines, but not within others, and the namespaces that it opens.
 DEFINITION = re.compile(r"^(?:struct|class)\s+(?:\w+\(\w+\)\s+)?(\w+)\s*(?:final\s*)?(?::[^:].*)?\{", re.MULTILINE)
 NAMESPACE = re.compile(r"^namespace\s+([\w:]+)\s*\{", re.MULTILINE)
 

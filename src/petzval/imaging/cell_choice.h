@@ -26,8 +26,8 @@ struct SamplingError {
   double error = 0;
   double finer = 0;  ///< the part of detail of a drawing finer than pixels can hold
 
-  /// Whether the rest of the tolerance is left to the blur, that is half of it. Finer detail may be all that
-  /// the sum of squares then allows, for its estimate is larger than what it is.
+  /// Whether it leaves half of the tolerance to the blur. All of it may be √3/2 of the tolerance, but half
+  /// without finer detail: what is estimated of that is more than is there.
   bool is_within(double tolerance) const {
     return error * error - finer * finer <= tolerance * tolerance / 4 &&
            error * error <= 0.75 * tolerance * tolerance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The frame of a printed chart in its photograph.
+// Where the places of a printed chart lie in its photograph.
 #pragma once
 
 #include <petzval/measure/sfr/edge_line.h>

@@ -14,7 +14,7 @@ struct OutlineSide {
   ContourPoint from, to;
 };
 
-/// The outlines of a target, as corners joined by straight lines.
+/// One outline of a target, as corners joined by straight lines.
 struct TargetOutline {
   std::vector<ContourPoint> corners;
   bool closed = false;

@@ -33,6 +33,7 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
   const double scale = pi * pi / 6 / carried;
   // What is left makes less than 1e-11 of the variance of some thousand pixels.
   constexpr double negligible = 1e-7;
+  // What noise leaves of the first harmonic.
   const auto first_harmonic = [](double noise2) { return std::exp(-2 * pi * pi * noise2); };
   std::vector<std::pair<long, std::size_t>> by_cell;
   std::vector<double> noise2;  // of each sample [steps²]
