@@ -21,22 +21,47 @@ std::span<const double>::iterator next_level(std::span<const double> levels, dou
   return std::upper_bound(levels.begin() + 1, levels.end() - 1, value);
 }
 
+/// What noise of this variance [steps²] leaves of the first harmonic.
+double first_harmonic(double noise2) {
+  return std::exp(-2 * pi * pi * noise2);
+}
+
+/// Cell of each sample, and the sample.
+using ByCell = std::vector<std::pair<long, std::size_t>>;
+constexpr long cells_a_step = 16;
+
+/// The most samples in a row of three steps, beyond which errors have nothing in common.
+std::size_t most_together(const ByCell& sorted) {
+  std::size_t most = 0, first = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    while (sorted[first].first + 3 * cells_a_step <= sorted[i].first) ++first;
+    most = std::max(most, i + 1 - first);
+  }
+  return most;
+}
+
+/// Whether rounding can add half a per cent to a standard deviation that noise [steps²] has already, if every
+/// error has something in common with so many: Σ_ij a_i a_j e_i e_j ≤ together · Σ a_i² e_i².
+bool matters(const std::vector<double>& noise2, std::size_t together) {
+  constexpr double negligible = 1e-2;  // of the variance
+  const double least = std::ranges::min(noise2), left = first_harmonic(least);
+  return static_cast<double>(together) * left * left / 12 > negligible * (least + 1.0 / 12);
+}
+
 }  // namespace
 
 QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<const double> values,
                                      std::span<const double> variance) {
   if (levels.size() < 2) return;
-  constexpr double cells_a_step = 16;
   // The harmonics that are left out carry a part of the 1/12 that all have together.
   double carried = 0;
   for (int k = 1; k <= harmonics; ++k) carried += 1.0 / (k * k);
   const double scale = pi * pi / 6 / carried;
   // What is left makes less than 1e-11 of the variance of some thousand pixels.
   constexpr double negligible = 1e-7;
-  // What noise leaves of the first harmonic.
-  const auto first_harmonic = [](double noise2) { return std::exp(-2 * pi * pi * noise2); };
-  std::vector<std::pair<long, std::size_t>> by_cell;
+  ByCell by_cell;
   std::vector<double> noise2;  // of each sample [steps²]
+  by_cell.reserve(values.size()), step_.reserve(values.size()), noise2.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto above = next_level(levels, values[i]);
     const double low = *(above - 1), step = *above - low;
@@ -46,8 +71,9 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
     step_.push_back(step);
     noise2.push_back(std::max(0.0, variance[i] / (step * step) - 1.0 / 12));
   }
-  if (values.empty() || first_harmonic(std::ranges::min(noise2)) < negligible) return;
+  if (values.empty() || !matters(noise2, values.size())) return;
   std::ranges::sort(by_cell);
+  if (!matters(noise2, most_together(by_cell))) return;
   for (const auto& [index, sample] : by_cell) order_.push_back(sample);
   for (std::size_t first = 0, last = 0; first < by_cell.size(); first = last) {
     const long index = by_cell[first].first;
