@@ -232,6 +232,20 @@ class Sfr(ProgramTest):
                         if 0.02 <= frequency <= 0.5:
                             self.assertAlmostEqual(sfr, truth[f"{frequency:.2f}"], delta=1e-3)
 
+    def test_corners_of_aberrated_pupils_are_in_the_stated_deviation(self):
+        """Without noise they are most of the error. Stated to within a factor of two, over the middle of the SFR."""
+        for f_number, *aberration in ((8, "--w020", 0.3), (4, "--w040", 0.5), (8, "--w020", 1.5)):
+            with self.subTest(f_number=f_number, aberration=aberration):
+                self.assert_succeeds("target", "--rectangle", "60x60@5", "--f-number", f_number, "--psf", "wavefront", *aberration,
+                                     "--wavelength", 550, "--pixel-pitch", 4.73, "-o", "t.npy", "--exact-sfr", "exact.csv")
+                truth = self.truth()
+                ratios = [(sfr - truth[f"{frequency:.2f}"]) / deviation for edge in self.json_of("sfr", "t.npy")["edges"]
+                          for frequency, sfr, deviation in zip(edge["frequencies_cpp"], edge["sfr"], edge["sfr_deviation"])
+                          if frequency <= 0.5 and 0.3 < sfr < 0.7]
+                rms = (sum(ratio * ratio for ratio in ratios) / len(ratios)) ** 0.5
+                self.assertGreater(rms, 0.5)
+                self.assertLess(rms, 2)
+
     def test_a_region_knows_its_surroundings(self):
         self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")
         truth = self.truth()

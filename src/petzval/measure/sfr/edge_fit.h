@@ -32,8 +32,13 @@ class EdgeFit {
   /// \throws InputError when no edge stands out, or it is too short.
   void run(const SfrOptions& options);
 
-  /// The same profile by other splines: finer ones, which end nearer.
-  EdgeSpreadModel variant() const;
+  /// The same profile by other splines, finer ones, which end nearer, and of samples about the middle of the
+  /// edge alone, as far as they are close enough together: towards the ends corners change the profile.
+  struct Variant {
+    EdgeSpreadModel model;
+    double share;  ///< of the samples
+  };
+  Variant variant() const;
   double noise() const { return noise_; }
 
   const EdgeLine& line() const { return line_; }

@@ -139,7 +139,7 @@ class Uncertainty {
  public:
   Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise) : fit_(fit), noise_(noise) {
     // What a model of splines and a tail cannot follow shows where there is next to no noise: in what other
-    // splines make of the same samples, and in how far the tail is extrapolated.
+    // splines make of samples far from the corners, and in how far the tail is extrapolated.
     constexpr double quiet = 1e-3;
     if (fit.noise() < quiet * fit.model().step() && fit.comb_px() == 0) variant_.emplace(fit.variant());
     constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
@@ -151,18 +151,25 @@ class Uncertainty {
     std::vector<double> deviations = noise_.of_moduli(frequencies_cpp, transforms);
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       const double f = frequencies_cpp[i];
-      const double other = variant_ ? std::abs(variant_->transform(f)) - std::abs(transforms[i]) : 0;
       constexpr double all_of_it_cpp = 0.02;
-      const double model = std::hypot(other, tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
+      const double model = std::hypot(difference(f, std::abs(transforms[i]), deviations[i]),
+                                      tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
       deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
     }
     return deviations;
   }
 
  private:
+  /// From the variant, beyond what noise alone makes of a difference from a part of the samples.
+  double difference(double frequency_cpp, double modulus, double noise) const {
+    if (!variant_) return 0;
+    const double all = std::abs(variant_->model.transform(frequency_cpp)) - modulus;
+    return std::sqrt(std::max(0.0, all * all - noise * noise * (1 / variant_->share - 1)));
+  }
+
   const EdgeFit& fit_;
   const EdgeSpreadModel::Deviation& noise_;
-  std::optional<EdgeSpreadModel> variant_;
+  std::optional<EdgeFit::Variant> variant_;
   double tail_;
 };
 
