@@ -26,12 +26,13 @@ Overview overview_of(std::span<const EdgeSample> samples) {
   Overview o;
   const double n = static_cast<double>(samples.size());
   for (const EdgeSample& s : samples) o.x += s.x / n, o.y += s.y / n, o.value += s.value / n;
-  double xx = 0, xy = 0, yy = 0, xv = 0, yv = 0;
+  double xx = 0, xy = 0, yy = 0, xv = 0, yv = 0, farthest2 = 0;
   for (const EdgeSample& s : samples) {
     const double x = s.x - o.x, y = s.y - o.y, v = s.value - o.value;
     xx += x * x, xy += x * y, yy += y * y, xv += x * v, yv += y * v;
-    o.radius = std::max(o.radius, std::hypot(x, y));
+    farthest2 = std::max(farthest2, x * x + y * y);
   }
+  o.radius = std::sqrt(farthest2);
   const double determinant = xx * yy - xy * xy;
   if (determinant > 0) {
     o.slope_x = (xv * yy - yv * xy) / determinant;

@@ -80,8 +80,8 @@ double SmoothAboutEdge::operator()(double x, double y) const {
   const double dx = x - line_.centre_x, dy = y - line_.centre_y;
   double along[most_along];
   Across across;
-  chebyshev_polynomials(std::clamp((dy * cos_ - dx * sin_) / line_.half_length, -1.0, 1.0), most_along,
-                        along);
+  chebyshev_polynomials(std::clamp((dy * cos_ - dx * sin_) / line_.half_length, -1.0, 1.0),
+                        static_cast<int>(coefficients_.size()), along);
   chebyshev_polynomials(std::clamp((dx * cos_ + dy * sin_ - middle_) * per_half_, -1.0, 1.0), most_across,
                         across.data());
   Across sum = Across::Zero();
