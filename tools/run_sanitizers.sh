@@ -35,8 +35,8 @@ PYTHON
   export LD_LIBRARY_PATH=$folder/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 }
 
-# HDF5's own threads and their start are not ours to judge.
-export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=report_signal_unsafe=0
+# HDF5's own threads and their start are not ours to judge, nor is Embree.
+export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=report_signal_unsafe=0:suppressions=$PWD/tools/tsan.supp
 worst=0
 for preset in "${presets[@]}"; do
   if [[ $preset == tsan ]] && ! instrumented_tbb; then
