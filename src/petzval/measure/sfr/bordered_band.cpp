@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/measure/sfr/bordered_band.h>
+#include <petzval/measure/sfr/bordered_lanes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,21 +33,8 @@ void BorderedBand::add(double factor, const BorderedBand& other) {
 }
 
 std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vectors) const {
-  using Lanes = Eigen::Array<double, 1, lanes>;
-  const auto row = [&](int i) {
-    return Eigen::Map<const Lanes>(vectors.data() + static_cast<std::ptrdiff_t>(i) * lanes);
-  };
-  Lanes sum = Lanes::Zero();
-  for (int j = 0; j < size(); ++j) {
-    const double* const a = column(j);
-    Lanes beside = Lanes::Zero();
-    if (j < band_)
-      for (int p = 1; p <= below(*this, j); ++p) beside += a[p] * row(j + p);
-    for (int r = std::max(0, j - band_ + 1); r < border_; ++r) beside += a[corner + r] * row(band_ + r);
-    sum += row(j) * (at(j, j) * row(j) + 2 * beside);
-  }
   std::array<double, lanes> result;
-  Eigen::Map<Lanes>(result.data()) = sum;
+  quadratic_of_eight({entries_.data(), band_, border_}, vectors.data(), result.data());
   return result;
 }
 
@@ -125,6 +113,10 @@ double BorderedCholesky::log_determinant() const {
 
 template <int count>
 void BorderedCholesky::solve_lanes(double* x) const {
+  if constexpr (count == BorderedBand::lanes) {
+    solve_eight({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), x);
+    return;
+  }
   using Lanes = Eigen::Array<double, 1, count>;
   const int band = factor_.band(), border = factor_.border(), size = factor_.size();
   const auto row = [&](int i) { return Eigen::Map<Lanes>(x + static_cast<std::ptrdiff_t>(i) * count); };

@@ -100,13 +100,14 @@ template <int terms>
 EdgeAlignment with_free_profile(const EdgeProfile& profile, const EdgeSpreadModel& model, int order,
                                 double noise) {
   AlignmentSums<terms> sums;
-  EdgeSpreadModel::Projection<terms> projection(model);
+  std::vector<double> derivatives(profile.points.size() * terms);
   for (std::size_t i = 0; i < profile.points.size(); ++i)
     if (std::abs(profile.points[i].distance) <= model.core_px())
-      projection.add(i, sums.add(profile, i, order));
+      std::ranges::copy(sums.add(profile, i, order),
+                        derivatives.begin() + static_cast<std::ptrdiff_t>(i * terms));
   // What little is left along the pixel grid must not be lost to rounding.
   const Eigen::VectorXd alone = sums.normal.diagonal();
-  sums.normal -= projection.taken();
+  sums.normal -= model.taken_of<terms>(derivatives);
   sums.normal.diagonal() += 1e-9 * alone;
   return solved(sums, 1, order, noise);
 }

@@ -19,6 +19,20 @@ struct EdgeSpreadBasis {
   /// Terms of light that varies, to each order.
   static constexpr std::array<int, 3> light_terms = {0, 2, 5};
 
+  /// Coefficients of 1, t, … t⁵ in the p-th of the quintic cardinal B-splines that cover an interval between
+  /// knots, at a share t of it: Σ_k (−1)^k C(6, k) (x − k)₊^5/120 at x = t + 5 − p.
+  static constexpr std::array<double, support> quintic(int p) {
+    constexpr int pairs[support] = {1, 6, 15, 20, 15, 6}, powers[support] = {1, 5, 10, 10, 5, 1};
+    std::array<double, support> coefficients{};
+    for (int k = 0; k < support - p; ++k)
+      for (int m = 0; m < support; ++m) {
+        double product = k % 2 == 0 ? 1.0 : -1.0;
+        for (int i = 0; i < support - 1 - m; ++i) product *= support - 1 - p - k;
+        coefficients[static_cast<std::size_t>(m)] += product * pairs[k] * powers[m] / 120;
+      }
+    return coefficients;
+  }
+
   int splines = 0;
   double knot_px = 0.25;
   int light_order = 0;

@@ -4,8 +4,9 @@
 #include <petzval/measure/sfr/edge_spread_model.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <type_traits>
+#include <vector>
 
 namespace petzval {
 
@@ -15,27 +16,21 @@ constexpr double b = EdgeSpreadBasis::scale_px;
 static_assert(EdgeSpreadBasis::closed_forms + EdgeSpreadBasis::light_terms.back() + EdgeShapes::count - 1 <=
               BorderedBand::most_border);
 
-/// Values and slopes [1/knot] of the six quintic cardinal B-splines that cover an interval between knots, at
-/// a share 0 ≤ t < 1 of it.
-void quintic(double t, double* values, double* slopes) {
-  const double u = 1 - t;
-  const auto p4 = [](double x) { return x * x * x * x; };
-  // Σ_k (−1)^k C(6, k) (x − k)^5/120 from either end.
-  const double u0 = p4(u), u1 = p4(u + 1), u2 = p4(u + 2), t0 = p4(t), t1 = p4(t + 1), t2 = p4(t + 2);
-  const double v0 = u * u0, v1 = (u + 1) * u1, v2 = (u + 2) * u2;
-  const double w0 = t * t0, w1 = (t + 1) * t1, w2 = (t + 2) * t2;
-  values[0] = v0 / 120;
-  values[1] = (v1 - 6 * v0) / 120;
-  values[2] = (v2 - 6 * v1 + 15 * v0) / 120;
-  values[3] = (w2 - 6 * w1 + 15 * w0) / 120;
-  values[4] = (w1 - 6 * w0) / 120;
-  values[5] = w0 / 120;
-  slopes[0] = -u0 / 24;
-  slopes[1] = -(u1 - 6 * u0) / 24;
-  slopes[2] = -(u2 - 6 * u1 + 15 * u0) / 24;
-  slopes[3] = (t2 - 6 * t1 + 15 * t0) / 24;
-  slopes[4] = (t1 - 6 * t0) / 24;
-  slopes[5] = t0 / 24;
+/// Values and slopes [1/knot] of the splines that cover an interval between knots, at a share of it.
+void evaluate_splines(double share, double* values, double* slopes) {
+  static constexpr auto powers = [] {
+    std::array<std::array<double, EdgeRows::support>, EdgeRows::support> all;
+    for (std::size_t p = 0; p < all.size(); ++p) all[p] = EdgeSpreadBasis::quintic(static_cast<int>(p));
+    return all;
+  }();
+  for (const auto& coefficients : powers) {
+    double value = 0, slope = 0;
+    for (std::size_t m = coefficients.size(); m-- > 0;) {
+      slope = slope * share + value;
+      value = value * share + coefficients[m];
+    }
+    *values++ = value, *slopes++ = slope;
+  }
 }
 
 /// One choice of the smoothing.
@@ -49,97 +44,18 @@ struct Solved {
 
 }  // namespace
 
-template <typename Use>
-auto EdgeSpreadModel::with_fixed(const Use& use) const {
-  if (options_.light_order == 2)
-    return use(std::integral_constant<int, closed_forms + EdgeSpreadBasis::light_terms[2]>());
-  if (options_.light_order == 1)
-    return use(std::integral_constant<int, closed_forms + EdgeSpreadBasis::light_terms[1]>());
-  return use(std::integral_constant<int, closed_forms>());
-}
-
-template <int fixed>
-void EdgeSpreadModel::add_products(const Row& row, double weight, BorderedBand& normal,
-                                   Corner<fixed>& corner) {
-  const auto& f = row.fixed;
-  for (std::size_t r = 0; r < fixed; ++r) {
-    const double value = weight * f[r];
-    for (std::size_t s = 0; s <= r; ++s) corner[r][s] += value * f[s];
-  }
-  for (int p = 0; p < support && row.first >= 0; ++p) {
-    double* const column = normal.column(row.first + p);
-    const double value = weight * row.splines[p];
-    for (int i = p; i < support; ++i) column[i - p] += value * row.splines[i];
-    for (int r = 0; r < fixed; ++r) column[support + r] += value * f[r];
-  }
-}
-
-template <int fixed>
-void EdgeSpreadModel::add_corner(const Corner<fixed>& corner, BorderedBand& normal) const {
-  for (int r = 0; r < fixed; ++r)
-    for (int s = 0; s <= r; ++s) normal.at(padded() + r, padded() + s) += corner[r][s];
-}
-
-template <int fixed>
-BorderedBand EdgeSpreadModel::weighted_normal(std::span<const double> weights) const {
-  BorderedBand normal(padded(), fixed);
-  Corner<fixed> corner{};
-  for (std::size_t i = 0; i < weights.size(); ++i) add_products<fixed>(rows_[i], weights[i], normal, corner);
-  add_corner<fixed>(corner, normal);
-  return normal;
-}
-
-BorderedBand EdgeSpreadModel::normal_of(std::span<const double> weights) const {
-  return trimmed(with_fixed([&](auto fixed) { return weighted_normal<fixed()>(weights); }));
-}
-
-template <int fixed>
-void EdgeSpreadModel::add_points(std::span<const EdgePoint> points) {
-  Eigen::VectorXd& right = padded_right_;
-  Corner<fixed> corner{};
-  double corner_right[fixed] = {};
-  const double cells = basis_.splines + support - 1;
-  for (const EdgePoint& point : points) {
-    Row& row = rows_.emplace_back();
-    const double d = point.distance, q = 1 / (d * d + b * b);
-    auto& f = row.fixed;
-    f[0] = 1;
-    f[1] = 0.5 + std::atan(d / b) / pi + 0.5 * b / pi * point.missing;
-    f[2] = -d * q + 0.5 * point.missing;
-    f[3] = -d * q * q;
-    if constexpr (fixed > closed_forms) {
-      f[4] = point.light * point.along;
-      f[5] = point.light * d / options_.core_px;
-    }
-    if constexpr (fixed > closed_forms + EdgeSpreadBasis::light_terms[1]) {
-      f[6] = f[4] * point.along;
-      f[7] = f[5] * point.along;
-      f[8] = f[5] * d / options_.core_px;
-    }
-    for (int r = 0; r < fixed; ++r) corner_right[r] += f[r] * point.value;
-    // Knots lie at −core + i·knot; an interval between them is covered by six splines.
-    const double at = (d + options_.core_px) / options_.knot_px, cell = std::floor(at);
-    if (cell >= 0 && cell < cells) {
-      row.first = static_cast<int>(cell);
-      quintic(at - cell, row.splines.data(), row.slopes.data());
-      for (int p = 0; p < support; ++p) right[row.first + p] += row.splines[p] * point.value;
-    }
-    add_products<fixed>(row, 1, padded_normal_, corner);
-  }
-  add_corner<fixed>(corner, padded_normal_);
-  for (int r = 0; r < fixed; ++r) right[padded() + r] += corner_right[r];
-}
-
-BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
+BorderedBand EdgeSpreadModel::normal_of(const EdgeRows::Products& sums) const {
   BorderedBand result(basis_.splines, basis_.border());
-  for (int j = 0; j < basis_.splines; ++j) {
-    for (int i = j; i < std::min(basis_.splines, j + support); ++i)
-      result.at(i, j) = all.at(margin + i, margin + j);
-    for (int r = 0; r < basis_.fixed(); ++r) result.at(basis_.place(r), j) = all.at(padded() + r, margin + j);
+  const int lanes = rows_.fixed_lanes();
+  const double* column = sums.columns.data() + margin * (EdgeRows::spline_lanes + lanes);
+  for (int j = 0; j < basis_.splines; ++j, column += EdgeRows::spline_lanes + lanes) {
+    std::copy_n(column, std::min(support, basis_.splines - j), result.column(j));
+    for (int r = 0; r < basis_.fixed(); ++r)
+      result.at(basis_.place(r), j) = column[EdgeRows::spline_lanes + r];
   }
   for (int r = 0; r < basis_.fixed(); ++r)
     for (int s = 0; s <= r; ++s)
-      result.at(basis_.place(r), basis_.place(s)) = all.at(padded() + r, padded() + s);
+      result.at(basis_.place(r), basis_.place(s)) = sums.corner[static_cast<std::size_t>(r * lanes + s)];
   return result;
 }
 
@@ -148,19 +64,14 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
       basis_{EdgeSpreadBasis::splines_within(options.core_px, options.knot_px), options.knot_px,
              options.light_order, options.prior.shapes ? EdgeShapes::count - 1 : 0} {
   options_.core_px = basis_.core_px();
-  rows_.reserve(points.size());
-  padded_normal_ = BorderedBand(padded(), basis_.fixed());
-  padded_right_ = Eigen::VectorXd::Zero(padded_normal_.size());
-  with_fixed([&](auto fixed) { add_points<fixed()>(points); });
+  rows_ = EdgeRows(points, basis_);
+  sums_ = rows_.products();
   fit(points);
 }
 
 void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> points) {
   if (order >= options_.light_order) return;
-  const int before = basis_.lights();
   options_.light_order = basis_.light_order = order;
-  padded_normal_.drop_border(before - basis_.lights());
-  padded_right_.conservativeResize(padded_normal_.size());
   fit(points);
 }
 
@@ -177,10 +88,13 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     low = std::min(low, point.value), high = std::max(high, point.value);
     square += point.value * point.value;
   }
-  data_normal_ = trimmed(padded_normal_);
+  data_normal_ = normal_of(sums_);
   right_ = Eigen::VectorXd::Zero(basis_.size());
-  right_.head(basis_.splines) = padded_right_.segment(margin, basis_.splines);
-  for (int r = 0; r < basis_.fixed(); ++r) right_[basis_.place(r)] = padded_right_[padded() + r];
+  const int lanes = rows_.fixed_lanes(), stride = EdgeRows::spline_lanes + lanes;
+  for (int j = 0; j < basis_.splines; ++j)
+    right_[j] = sums_.columns[static_cast<std::size_t>((margin + j + 1) * stride - 1)];
+  for (int r = 0; r < basis_.fixed(); ++r)
+    right_[basis_.place(r)] = sums_.corner[static_cast<std::size_t>((r + 1) * lanes - 1)];
   const EdgePrior prior(options_.prior, basis_, high - low);
   BorderedBand normal = data_normal_;
   prior.add_first_part(normal);
@@ -236,31 +150,19 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
 
 void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points, std::vector<ValueAndSlope>& fitted,
                                       std::vector<double>& variations) const {
+  std::vector<double> splines(static_cast<std::size_t>(rows_.padded() + EdgeRows::spline_lanes));
+  std::vector<double> fixed(static_cast<std::size_t>(rows_.fixed_lanes()));
+  std::copy_n(coefficients_.data(), basis_.splines, splines.begin() + margin);
+  for (int r = 0; r < basis_.fixed(); ++r) fixed[static_cast<std::size_t>(r)] = coefficients_[basis_.place(r)];
+  const EdgeRows::Sums sums = rows_.evaluate(splines, fixed);
+  const double half_tail = 0.5 * (b / pi * fixed[1] + fixed[2]);
   fitted.resize(points.size());
   variations.resize(points.size());
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(padded() + basis_.fixed());
-  c.segment(margin, basis_.splines) = coefficients_.head(basis_.splines);
-  const double* const closed = coefficients_.data() + basis_.splines;
-  const double half_tail = 0.5 * (b / pi * closed[1] + closed[2]), per_px = 1 / options_.knot_px;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Row& row = rows_[i];
-    const double d = points[i].distance, q = 1 / (d * d + b * b), dq = d * q;
-    ValueAndSlope at;
+    const double* const row = rows_.fixed(i);
     double variation = half_tail * points[i].missing;
-    at.value = closed[0] + closed[1] * row.fixed[1] + closed[2] * row.fixed[2] + closed[3] * row.fixed[3] -
-               variation;
-    at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
-    for (std::size_t k = closed_forms; k < static_cast<std::size_t>(basis_.fixed()); ++k)
-      variation += coefficients_[basis_.place(static_cast<int>(k))] * row.fixed[k];
-    if (row.first >= 0) {
-      double slope = 0;
-      for (int p = 0; p < support; ++p) {
-        at.value += c[row.first + p] * row.splines[p];
-        slope += c[row.first + p] * row.slopes[p];
-      }
-      at.slope += slope * per_px;
-    }
-    fitted[i] = at;
+    for (int r = closed_forms; r < basis_.fixed(); ++r) variation += fixed[static_cast<std::size_t>(r)] * row[r];
+    fitted[i] = {sums.values[i] - variation, sums.slopes[i]};
     variations[i] = variation;
   }
 }
@@ -274,7 +176,7 @@ EdgeSpreadModel::ValueAndSlope EdgeSpreadModel::evaluate(double d) const {
   const double place = (d + options_.core_px) / options_.knot_px, cell = std::floor(place);
   if (!(cell >= 0) || cell >= basis_.splines + support - 1) return at;
   double values[support], slopes[support];
-  quintic(place - cell, values, slopes);
+  evaluate_splines(place - cell, values, slopes);
   const int first = static_cast<int>(cell) - margin;
   for (int i = std::max(0, -first); i < std::min(support, basis_.splines - first); ++i) {
     at.value += coefficients_[first + i] * values[i];
@@ -310,37 +212,22 @@ double EdgeSpreadModel::unknowns() const {
 }
 
 template <int functions>
-EdgeSpreadModel::Projection<functions>::Projection(const EdgeSpreadModel& model)
-    : model_(model), sums_(decltype(sums_)::Zero(model.padded() + model.basis_.fixed(), functions)) {}
-
-template <int functions>
-void EdgeSpreadModel::Projection<functions>::add(std::size_t point,
-                                                 const std::array<double, functions>& values) {
-  const Row& row = model_.rows_[point];
-  const auto add_to = [&](int unknown, double weight) {
-    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * functions;
-    for (std::size_t k = 0; k < values.size(); ++k) sum[k] += weight * values[k];
-  };
-  for (int p = 0; p < support && row.first >= 0; ++p)
-    add_to(row.first + p, row.splines[static_cast<std::size_t>(p)]);
-  for (int r = 0; r < model_.basis_.fixed(); ++r)
-    add_to(model_.padded() + r, row.fixed[static_cast<std::size_t>(r)]);
-}
-
-template <int functions>
-typename EdgeSpreadModel::Projection<functions>::Matrix EdgeSpreadModel::Projection<functions>::taken()
-    const {
-  const EdgeSpreadBasis& basis = model_.basis_;
-  BorderedBand::Columns<functions> sums = decltype(sums)::Zero(basis.size(), functions);
-  sums.topRows(basis.splines) = sums_.middleRows(margin, basis.splines);
-  for (int r = 0; r < basis.fixed(); ++r) sums.row(basis.place(r)) = sums_.row(model_.padded() + r);
+Eigen::Matrix<double, functions, functions> EdgeSpreadModel::taken_of(std::span<const double> values) const {
+  const std::vector<double> projected = rows_.project(values, functions);
+  const auto of_functions = Eigen::Map<const Eigen::MatrixXd>(
+      projected.data(), static_cast<Eigen::Index>(rows_.projections()), functions);
+  BorderedBand::Columns<functions> sums = decltype(sums)::Zero(basis_.size(), functions);
+  sums.topRows(basis_.splines) = of_functions.middleRows(margin, basis_.splines);
+  for (int r = 0; r < basis_.fixed(); ++r)
+    sums.row(basis_.place(r)) = of_functions.row(rows_.padded() + EdgeRows::spline_lanes + r);
   BorderedBand::Columns<functions> solved = sums;
-  model_.factor_.solve_in_place(solved);
+  factor_.solve_in_place(solved);
   return sums.transpose() * solved;
 }
 
-template class EdgeSpreadModel::Projection<2>;
-template class EdgeSpreadModel::Projection<4>;
-template class EdgeSpreadModel::Projection<BorderedBand::lanes>;
+template Eigen::Matrix<double, 2, 2> EdgeSpreadModel::taken_of<2>(std::span<const double>) const;
+template Eigen::Matrix<double, 4, 4> EdgeSpreadModel::taken_of<4>(std::span<const double>) const;
+template Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes> EdgeSpreadModel::taken_of<
+    BorderedBand::lanes>(std::span<const double>) const;
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <petzval/measure/sfr/bordered_band.h>
 #include <petzval/measure/sfr/edge_prior.h>
+#include <petzval/measure/sfr/edge_rows.h>
 #include <petzval/measure/sfr/edge_spread_basis.h>
 #include <petzval/measure/sfr/quantisation_noise.h>
 
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace petzval {
-
-/// A sample by its distance from the edge.
-struct EdgePoint {
-  double distance = 0, value = 0;
-  double along = 0;    ///< place along the edge, −1 to 1
-  double light = 0;    ///< expected value over that of the bright side; both only for light that varies
-  double missing = 0;  ///< SfrOptions::missing_target there [1/pixel]
-};
 
 struct EdgeSpreadOptions {
   double core_px = 10;    ///< splines reach as far as this from the edge; beyond it there is only the tail
@@ -93,21 +86,11 @@ class EdgeSpreadModel {
   double criterion() const { return criterion_; }
 
   /// What the profile can take of other functions of the points, so that these and it can be fitted together
-  /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
-  template <int functions>  // 2, 4 or BorderedBand::lanes
-  class Projection {
-   public:
-    using Matrix = Eigen::Matrix<double, functions, functions>;
-    explicit Projection(const EdgeSpreadModel& model);
-    /// The values that the functions have at a point that the model was made from; 0 at those not named.
-    void add(std::size_t point, const std::array<double, functions>& values);
-    /// Sums over the points of the products of what the profile takes.
-    Matrix taken() const;
-
-   private:
-    const EdgeSpreadModel& model_;
-    BorderedBand::Columns<functions> sums_;
-  };
+  /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): sums over the points
+  /// that the model was made from of the products of what it takes. \param values  of the functions at each
+  /// point, one after the other. `functions` is 2, 4 or BorderedBand::lanes.
+  template <int functions>
+  Eigen::Matrix<double, functions, functions> taken_of(std::span<const double> values) const;
 
   /// Standard deviations of |transform|: of noise of the given variances at the points, of their rounding,
   /// and of what smoothing may have taken away (the spread of the posterior, which holds on average for
@@ -126,9 +109,9 @@ class EdgeSpreadModel {
    private:
     /// xᵀ (spread + rounding) x of each vector.
     std::array<double, BorderedBand::lanes> variances(const BorderedBand::Block& x) const;
-    /// d|transform|/d(right side), into every `stride`-th place.
-    void gradient_of_modulus(double frequency_cpp, std::complex<double> transform, double* gradient,
-                             int stride) const;
+    /// d|transform|/d(unknowns) at up to eight frequencies.
+    BorderedBand::Block gradients_of_moduli(std::span<const double> frequencies_cpp,
+                                            std::span<const std::complex<double>> transforms) const;
 
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations
@@ -136,44 +119,18 @@ class EdgeSpreadModel {
   };
 
  private:
-  static constexpr int closed_forms = EdgeSpreadBasis::closed_forms, support = EdgeSpreadBasis::support;
-  /// What the unknowns do to the value at a point. The splines come first, then the closed forms.
-  struct Row {
-    int first =
-        -1;  ///< of the splines that are not zero, counted from `margin` before the first unknown; −1: none
-    std::array<double, support> splines, slopes;  ///< slopes [1/knot]
-    std::array<double, closed_forms + EdgeSpreadBasis::light_terms.back()> fixed;
-  };
-  /// Splines that reach beyond the core have no unknown; rows count them all the same, so that all are alike.
-  static constexpr int margin = support - 1;
-  int padded() const { return basis_.splines + 2 * margin; }
-  template <int fixed>
-  using Corner = std::array<std::array<double, fixed>, fixed>;
-  template <int fixed>
-  void add_points(std::span<const EdgePoint> points);
-  /// Adds a row's products to the band, and those of functions that reach everywhere to the corner.
-  template <int fixed>
-  static void add_products(const Row& row, double weight, BorderedBand& normal, Corner<fixed>& corner);
-  template <int fixed>
-  void add_corner(const Corner<fixed>& corner, BorderedBand& normal) const;
-  template <int fixed>
-  BorderedBand weighted_normal(std::span<const double> weights) const;
-  /// \returns what `use` makes of the number of functions that reach everywhere, as a constant.
-  template <typename Use>
-  auto with_fixed(const Use& use) const;
-  /// Normal equations of the unknowns, of points of these weights.
-  BorderedBand normal_of(std::span<const double> weights) const;
-  BorderedBand trimmed(const BorderedBand& padded) const;
+  static constexpr int closed_forms = EdgeSpreadBasis::closed_forms, support = EdgeSpreadBasis::support,
+                       margin = EdgeRows::margin;
+  /// Normal equations of the unknowns, of these sums over the points.
+  BorderedBand normal_of(const EdgeRows::Products& sums) const;
   void fit(std::span<const EdgePoint> points);
 
   EdgeSpreadOptions options_;
   EdgeSpreadBasis basis_;
   double dark_ = 0, step_ = 1, criterion_ = 0;
   Eigen::VectorXd coefficients_;
-  std::vector<Row> rows_;  ///< of the points
-  /// Normal equations of the data alone, with the splines that have no unknown and without shapes.
-  BorderedBand padded_normal_;
-  Eigen::VectorXd padded_right_;
+  EdgeRows rows_;            ///< of the points
+  EdgeRows::Products sums_;  ///< over them
   BorderedBand data_normal_;  ///< of the unknowns
   Eigen::VectorXd right_;     ///< side of the normal equations
   BorderedBand priors_;       ///< of the priors and the roughness

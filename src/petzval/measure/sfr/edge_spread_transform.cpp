@@ -2,6 +2,7 @@
 // The Fourier transform of a fitted profile, and how sure it is.
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
+#include <petzval/measure/sfr/transform_lanes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,51 +30,56 @@ struct FormTransforms {
   }
 };
 
-/// Calls `use` with cosine and sine of 2πf times the place of the first half of the splines, from the outside
-/// in; the place of the others is the same with the opposite sign, and in the middle of an odd number there
-/// is 0.
-template <typename Use>
-void for_spline_phases(double f, double knot_px, int splines, const Use& use) {
-  const double turn = 2 * pi * f * knot_px, start = -0.5 * (splines - 1) * turn;
-  const double turn_cos = std::cos(turn), turn_sin = std::sin(turn);
-  double cosine = std::cos(start), sine = std::sin(start);
-  for (int j = 0; j < (splines + 1) / 2; ++j) {
-    use(j, cosine, sine);
-    const double next = cosine * turn_cos - sine * turn_sin;
-    sine = sine * turn_cos + cosine * turn_sin;
-    cosine = next;
+using Frequencies = std::span<const double>;
+
+/// Of up to eight frequencies; the others are 0.
+SplinePhases phases_of(Frequencies frequencies_cpp, double knot_px, int splines) {
+  SplinePhases phases{};
+  for (std::size_t k = 0; k < frequencies_cpp.size(); ++k) {
+    const double turn = 2 * pi * frequencies_cpp[k] * knot_px, start = -0.5 * (splines - 1) * turn;
+    phases.cosine[k] = std::cos(start), phases.sine[k] = std::sin(start);
+    phases.turn_cosine[k] = std::cos(turn), phases.turn_sine[k] = std::sin(turn);
   }
+  return phases;
+}
+
+/// Calls `use` with the first of up to eight frequencies at a time, and with these.
+template <typename Use>
+void for_eight(Frequencies frequencies_cpp, const Use& use) {
+  constexpr std::size_t eight = SplinePhases::count;
+  static_assert(SplinePhases::count == BorderedBand::lanes);
+  for (std::size_t first = 0; first < frequencies_cpp.size(); first += eight)
+    use(first, frequencies_cpp.subspan(first, std::min(eight, frequencies_cpp.size() - first)));
 }
 
 }  // namespace
 
 std::complex<double> EdgeSpreadModel::transform(double f) const {
-  const FormTransforms forms(f, options_.knot_px);
-  const double* const c = coefficients_.data();
-  const double* const closed = c + basis_.splines;
-  double even = 0, odd = 0;
-  for_spline_phases(f, options_.knot_px, basis_.splines, [&](int j, double cosine, double sine) {
-    const int other = basis_.splines - 1 - j;
-    const double partner = other > j ? c[other] : 0;
-    even += (c[j] + partner) * cosine;
-    odd += (c[j] - partner) * sine;
-  });
-  // Σ c (cos − i sin) times i·spline.
-  return std::complex<double>(
-             closed[1] * forms.step + closed[2] * forms.tail1 + closed[3] * forms.tail3 + forms.spline * odd,
-             forms.spline * even) /
-         step_;
+  return transforms({&f, 1}).front();
 }
 
-std::vector<std::complex<double>> EdgeSpreadModel::transforms(std::span<const double> frequencies_cpp) const {
+std::vector<std::complex<double>> EdgeSpreadModel::transforms(Frequencies frequencies_cpp) const {
+  const double* const closed = coefficients_.data() + basis_.splines;
   std::vector<std::complex<double>> values;
-  for (const double f : frequencies_cpp) values.push_back(transform(f));
+  values.reserve(frequencies_cpp.size());
+  for_eight(frequencies_cpp, [&](std::size_t, Frequencies some) {
+    const SplineSums sums = spline_sums(phases_of(some, options_.knot_px, basis_.splines),
+                                        coefficients_.data(), basis_.splines);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const FormTransforms forms(some[k], options_.knot_px);
+      // Σ c (cos − i sin) times i·spline.
+      const std::complex<double> value(closed[1] * forms.step + closed[2] * forms.tail1 +
+                                           closed[3] * forms.tail3 + forms.spline * sums.odd[k],
+                                       forms.spline * sums.even[k]);
+      values.push_back(value / step_);
+    }
+  });
   return values;
 }
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
-    : model_(model), spread_(model.normal_of(variance)) {
+    : model_(model), spread_(model.normal_of(model.rows_.products(variance))) {
   const int splines = model.basis_.splines, fixed = model.basis_.fixed();
   double mean = 0;
   for (const double each : variance) mean += each / static_cast<double>(variance.size());
@@ -83,50 +89,47 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
   rounding_ = Eigen::MatrixXd::Zero(spread_.size(), spread_.size());
   rounding.add_spread(
       [&](std::size_t i, double weight, double* sum) {
-        const Row& row = model.rows_[i];
-        for (int p = 0; p < support && row.first >= 0; ++p)
-          if (const int j = row.first + p - margin; j >= 0 && j < splines) sum[j] += weight * row.splines[p];
-        for (int r = 0; r < fixed; ++r) sum[model.basis_.place(r)] += weight * row.fixed[r];
+        const int first = model.rows_.first(i) - margin;
+        for (int p = 0; p < support && first >= -margin; ++p)
+          if (const int j = first + p; j >= 0 && j < splines) sum[j] += weight * model.rows_.splines(i)[p];
+        for (int r = 0; r < fixed; ++r) sum[model.basis_.place(r)] += weight * model.rows_.fixed(i)[r];
       },
       rounding_);
   rounding_.diagonal() *= 0.5;
 }
 
-void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, std::complex<double> value, double* gradient,
-                                                     int stride) const {
-  const int splines = model_.basis_.splines;
-  const double modulus = std::abs(value);
-  const double real = modulus > 0 ? value.real() / modulus : 1,
-               imaginary = modulus > 0 ? value.imag() / modulus : 0;
-  const FormTransforms forms(f, model_.options_.knot_px);
-  const double per_step = 1 / model_.step_;
-  const auto set = [&](int unknown, double derivative) {
-    gradient[unknown * stride] = derivative * per_step;
-  };
-  set(splines + 1, real * forms.step - modulus);
-  set(splines + 2, real * forms.tail1);
-  set(splines + 3, real * forms.tail3);
-  for_spline_phases(f, model_.options_.knot_px, splines, [&](int j, double cosine, double sine) {
-    const int other = splines - 1 - j;
-    set(j, forms.spline * (imaginary * cosine + real * sine));
-    set(other, forms.spline * (imaginary * cosine - (other > j ? real * sine : 0)));
-  });
+BorderedBand::Block EdgeSpreadModel::Deviation::gradients_of_moduli(
+    Frequencies frequencies_cpp, std::span<const std::complex<double>> transforms) const {
+  const EdgeSpreadBasis& basis = model_.basis_;
+  BorderedBand::Block gradients = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
+  SplineSums factors{};
+  for (std::size_t k = 0; k < frequencies_cpp.size(); ++k) {
+    const double modulus = std::abs(transforms[k]);
+    const double real = modulus > 0 ? transforms[k].real() / modulus : 1,
+                 imaginary = modulus > 0 ? transforms[k].imag() / modulus : 0;
+    const FormTransforms forms(frequencies_cpp[k], model_.options_.knot_px);
+    const auto column = static_cast<Eigen::Index>(k);
+    gradients(basis.step(), column) = (real * forms.step - modulus) / model_.step_;
+    gradients(basis.tail1(), column) = real * forms.tail1 / model_.step_;
+    gradients(basis.tail3(), column) = real * forms.tail3 / model_.step_;
+    factors.even[k] = forms.spline * imaginary / model_.step_;
+    factors.odd[k] = forms.spline * real / model_.step_;
+  }
+  spline_waves(phases_of(frequencies_cpp, model_.options_.knot_px, basis.splines), factors, basis.splines,
+               gradients.data());
+  return gradients;
 }
 
 std::vector<double> EdgeSpreadModel::Deviation::of_moduli(
-    std::span<const double> frequencies_cpp, std::span<const std::complex<double>> transforms) const {
-  constexpr std::size_t lanes = BorderedBand::lanes;
+    Frequencies frequencies_cpp, std::span<const std::complex<double>> transforms) const {
   std::vector<double> deviations;
-  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
-    BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
-    const std::size_t count = std::min(lanes, frequencies_cpp.size() - first);
-    for (std::size_t k = 0; k < count; ++k)
-      gradient_of_modulus(frequencies_cpp[first + k], transforms[first + k], x.data() + k,
-                          BorderedBand::lanes);
+  deviations.reserve(frequencies_cpp.size());
+  for_eight(frequencies_cpp, [&](std::size_t first, Frequencies some) {
+    BorderedBand::Block x = gradients_of_moduli(some, transforms.subspan(first, some.size()));
     model_.factor_.solve_in_place(x);
-    const std::array<double, lanes> variance = variances(x);
-    for (std::size_t k = 0; k < count; ++k) deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
-  }
+    const std::array<double, BorderedBand::lanes> variance = variances(x);
+    for (std::size_t k = 0; k < some.size(); ++k) deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
+  });
   return deviations;
 }
 
@@ -141,9 +144,7 @@ std::array<double, BorderedBand::lanes> EdgeSpreadModel::Deviation::variances(
 }
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
-  BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
-  for (std::size_t k = 0; k < f.size(); ++k)
-    gradient_of_modulus(f[k], model_.transform(f[k]), x.data() + k, BorderedBand::lanes);
+  BorderedBand::Block x = gradients_of_moduli(f, model_.transforms(f));
   model_.factor_.solve_in_place(x);
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};

@@ -81,28 +81,59 @@ double level_between(double level, const std::vector<double>& contrast, double s
          (static_cast<double>(below - contrast.begin()) - 1 + (before - level) / (before - *below));
 }
 
-/// The same of the model itself, the values being its own.
-MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vector<double>& contrast,
-                    double step_cpp) {
-  MtfLevel result{level, NAN, NAN};
-  const auto below = std::find_if(contrast.begin(), contrast.end(), [&](double c) { return c < level; });
-  if (below == contrast.begin() || below == contrast.end()) return result;
-  double high = step_cpp * static_cast<double>(below - contrast.begin()), low = high - step_cpp;
-  double high_rest = *below - level, low_rest = *(below - 1) - level;
-  for (int i = 0; i < 20 && high - low > 1e-12; ++i) {
-    // Alternately where a chord passes and in the middle, so that both ends close in.
-    double at = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * low_rest / (low_rest - high_rest);
-    at = std::clamp(at, low, high);
-    const double rest = std::abs(model.transform(at)) - level;
-    if (std::abs(rest) < 1e-12) {
-      low = high = at;
-      break;
-    }
-    (rest < 0 ? high : low) = at;
-    (rest < 0 ? high_rest : low_rest) = rest;
+/// A level between two frequencies.
+class LevelSearch {
+ public:
+  LevelSearch(double level, const std::vector<double>& contrast, double step_cpp) : level_(level) {
+    const auto below = std::find_if(contrast.begin(), contrast.end(), [&](double c) { return c < level; });
+    if (below == contrast.begin() || below == contrast.end()) return;
+    high_ = step_cpp * static_cast<double>(below - contrast.begin()), low_ = high_ - step_cpp;
+    high_rest_ = *below - level, low_rest_ = *(below - 1) - level;
+    found_ = true;
   }
-  result.frequency_cpp = 0.5 * (low + high);
-  return result;
+  bool open() const { return found_ && high_ - low_ > 1e-12; }
+  /// Where to look in the next round.
+  double next(int round) const {
+    // Alternately where a chord passes and in the middle, so that both ends close in.
+    const double at = round % 3 == 2 ? 0.5 * (low_ + high_)
+                                     : low_ + (high_ - low_) * low_rest_ / (low_rest_ - high_rest_);
+    return std::clamp(at, low_, high_);
+  }
+  void take(double at, double contrast) {
+    const double rest = contrast - level_;
+    if (std::abs(rest) < 1e-12) {
+      low_ = high_ = at;
+      return;
+    }
+    (rest < 0 ? high_ : low_) = at;
+    (rest < 0 ? high_rest_ : low_rest_) = rest;
+  }
+  MtfLevel result() const { return {level_, found_ ? 0.5 * (low_ + high_) : NAN, NAN}; }
+
+ private:
+  double level_, low_ = 0, high_ = 0, low_rest_ = 0, high_rest_ = 0;
+  bool found_ = false;
+};
+
+/// The levels of the model itself, all at once. \param contrast  between values of which each lies.
+std::vector<MtfLevel> find_levels(const EdgeSpreadModel& model, const std::vector<double>& contrast,
+                                  double step_cpp) {
+  std::vector<LevelSearch> searches;
+  for (int percent = 90; percent >= 10; percent -= 10)
+    searches.emplace_back(percent / 100.0, contrast, step_cpp);
+  constexpr int most_rounds = 20;
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<LevelSearch*> open;
+    std::vector<double> places;
+    for (LevelSearch& search : searches)
+      if (search.open()) open.push_back(&search), places.push_back(search.next(round));
+    if (open.empty()) break;
+    const std::vector<std::complex<double>> transforms = model.transforms(places);
+    for (std::size_t i = 0; i < open.size(); ++i) open[i]->take(places[i], std::abs(transforms[i]));
+  }
+  std::vector<MtfLevel> levels;
+  for (const LevelSearch& search : searches) levels.push_back(search.result());
+  return levels;
 }
 
 void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const EdgeProfile& profile) {
@@ -179,13 +210,20 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Un
   const double highest = std::max(1.0, result.frequencies_cpp.back());
   std::vector<double> contrast{1};
   // Until the last level is passed, and no farther.
-  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
-    contrast.push_back(std::abs(model.transform(f)));
-  std::vector<double> passed;
-  for (int percent = 90; percent >= 10; percent -= 10) {
-    result.mtf.push_back(find_level(model, percent / 100.0, contrast, step));
-    if (std::isfinite(result.mtf.back().frequency_cpp)) passed.push_back(result.mtf.back().frequency_cpp);
+  constexpr int together = 8;
+  while (contrast.back() >= 0.1) {
+    std::vector<double> places;
+    for (std::size_t i = contrast.size(); i < contrast.size() + together; ++i)
+      if (const double f = step * static_cast<double>(i); f <= highest + 1e-9) places.push_back(f);
+    if (places.empty()) break;
+    for (const std::complex<double>& value : model.transforms(places)) contrast.push_back(std::abs(value));
   }
+  const auto last = std::ranges::find_if(contrast, [](double c) { return c < 0.1; });
+  if (last != contrast.end()) contrast.erase(last + 1, contrast.end());
+  result.mtf = find_levels(model, contrast, step);
+  std::vector<double> passed;
+  for (const MtfLevel& level : result.mtf)
+    if (std::isfinite(level.frequency_cpp)) passed.push_back(level.frequency_cpp);
   const std::vector<double> deviations = uncertainty.of_moduli(passed, model.transforms(passed));
   auto of_modulus = deviations.begin();
   for (MtfLevel& level : result.mtf) {

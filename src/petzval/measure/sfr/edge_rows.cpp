@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
+#include <petzval/measure/sfr/edge_rows.h>
+
+#include <algorithm>
+#include <array>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "petzval/measure/sfr/edge_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+
+#ifndef PETZVAL_EDGE_ROWS_PASSED
+#define PETZVAL_EDGE_ROWS_PASSED
+namespace petzval {
+namespace {
+
+constexpr int support = EdgeRows::support, spline_lanes = EdgeRows::spline_lanes,
+              spline_room = EdgeRows::spline_room;
+
+/// Where rows are written to.
+struct RowsTarget {
+  double *rows, *distance, *share;
+  int* first;
+  int fixed_lanes;
+};
+
+/// Of t^m in the splines that cover an interval between knots, in rows of `spline_lanes`; then of t^m in
+/// their derivatives.
+struct SplinePowers {
+  double values[support][spline_lanes] = {}, slopes[support][spline_lanes] = {};
+  constexpr SplinePowers() {
+    for (std::size_t m = 0; m < support; ++m)
+      for (int p = 0; p < support; ++p) {
+        values[m][p] = EdgeSpreadBasis::quintic(p)[m];
+        if (m > 0) slopes[m - 1][p] = static_cast<double>(m) * values[m][p];
+      }
+  }
+};
+constexpr SplinePowers powers;
+
+}  // namespace
+}  // namespace petzval
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace petzval::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<double, spline_lanes>;
+
+/// At a time: arithmetic that points have in common is done for so many, into places beside one another.
+constexpr int block = 8;
+struct Block {
+  double distance[block], missing[block], cell[block], share[block], step[block], tail1[block], tail3[block];
+};
+
+/// Values of the closed forms, and where among the splines the points lie.
+HWY_ATTR void evaluate_forms(Block& at, double core_px, double per_knot) {
+  const Lanes d;
+  const auto one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+  for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
+    const auto x = hn::LoadU(d, at.distance + i), missing = hn::Mul(half, hn::LoadU(d, at.missing + i));
+    const auto q = hn::Div(one, hn::MulAdd(x, x, one)), xq = hn::Mul(x, q), per_pi = hn::Set(d, 1 / pi);
+    hn::StoreU(hn::Add(half, hn::Mul(per_pi, hn::Add(hn::Atan(d, x), missing))), d, at.step + i);
+    hn::StoreU(hn::Sub(missing, xq), d, at.tail1 + i);
+    hn::StoreU(hn::Neg(hn::Mul(xq, q)), d, at.tail3 + i);
+    const auto place = hn::Mul(hn::Add(x, hn::Set(d, core_px)), hn::Set(d, per_knot)),
+               cell = hn::Floor(place);
+    hn::StoreU(cell, d, at.cell + i);
+    hn::StoreU(hn::Sub(place, cell), d, at.share + i);
+  }
+}
+
+HWY_ATTR void make_splines(double share, double* splines) {
+  const Lanes d;
+  const auto t = hn::Set(d, share);
+  for (int v = 0; v < spline_lanes; v += static_cast<int>(hn::Lanes(d))) {
+    auto sum = hn::LoadU(d, powers.values[support - 1] + v);
+    for (int m = support - 2; m >= 0; --m) sum = hn::MulAdd(sum, t, hn::LoadU(d, powers.values[m] + v));
+    hn::StoreU(sum, d, splines + v);
+  }
+}
+
+HWY_ATTR void make_fixed(const EdgePoint& point, double core_px, int light_order, double* fixed) {
+  if (light_order > 0) {
+    fixed[4] = point.light * point.along;
+    fixed[5] = point.light * point.distance / core_px;
+  }
+  if (light_order > 1) {
+    fixed[6] = fixed[4] * point.along;
+    fixed[7] = fixed[5] * point.along;
+    fixed[8] = fixed[5] * point.distance / core_px;
+  }
+}
+
+HWY_ATTR void make_rows(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis,
+                        const RowsTarget& made) {
+  const double core_px = basis.core_px(), per_knot = 1 / basis.knot_px;
+  const double cells = basis.splines + support - 1;
+  double* row = made.rows;
+  for (std::size_t begin = 0; begin < points.size(); begin += block) {
+    const std::size_t count = std::min<std::size_t>(block, points.size() - begin);
+    Block at{};
+    for (std::size_t i = 0; i < count; ++i)
+      at.distance[i] = points[begin + i].distance, at.missing[i] = points[begin + i].missing;
+    evaluate_forms(at, core_px, per_knot);
+    for (std::size_t i = 0; i < count; ++i, row += made.fixed_lanes + spline_room) {
+      const EdgePoint& point = points[begin + i];
+      std::fill_n(row, made.fixed_lanes + spline_room, 0.0);
+      row[0] = 1, row[1] = at.step[i], row[2] = at.tail1[i], row[3] = at.tail3[i];
+      make_fixed(point, core_px, basis.light_order, row);
+      row[made.fixed_lanes - 1] = point.value;
+      const bool covered = at.cell[i] >= 0 && at.cell[i] < cells;
+      if (covered) make_splines(at.share[i], row + made.fixed_lanes);
+      made.first[begin + i] = covered ? static_cast<int>(at.cell[i]) : -1;
+      made.distance[begin + i] = point.distance, made.share[begin + i] = at.share[i];
+    }
+  }
+}
+
+/// sums += factor · values
+HWY_ATTR HWY_INLINE void add_multiple(double factor, const double* values, int count, double* sums) {
+  const Lanes d;
+  const auto f = hn::Set(d, factor);
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d)))
+    hn::StoreU(hn::MulAdd(f, hn::LoadU(d, values + v), hn::LoadU(d, sums + v)), d, sums + v);
+}
+
+template <int fixed_lanes>
+HWY_ATTR void add_products(const EdgeRows& rows, const double* weights, int fixed, double* columns,
+                           double* corner) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double* const row = rows.fixed(i);
+    const double weight = weights == nullptr ? 1 : weights[i];
+    for (int r = 0; r < fixed; ++r) add_multiple(weight * row[r], row, fixed_lanes, corner + r * fixed_lanes);
+    if (rows.first(i) < 0) continue;
+    const double* const splines = row + fixed_lanes;
+    double* column = columns + rows.first(i) * (spline_lanes + fixed_lanes);
+    for (int p = 0; p < support; ++p, column += spline_lanes + fixed_lanes) {
+      const double factor = weight * splines[p];
+      add_multiple(factor, splines + p, support - p, column);
+      add_multiple(factor, row, fixed_lanes, column + spline_lanes);
+    }
+  }
+}
+
+HWY_ATTR void add_all_products(const EdgeRows& rows, const double* weights, int fixed, double* columns,
+                               double* corner) {
+  if (rows.fixed_lanes() == 8)
+    add_products<8>(rows, weights, fixed, columns, corner);
+  else
+    add_products<16>(rows, weights, fixed, columns, corner);
+}
+
+/// The slope of the splines over the interval at `share` of it, per interval.
+HWY_ATTR HWY_INLINE double spline_slope(double share, const double* coefficients) {
+  const Lanes d;
+  const auto t = hn::Set(d, share);
+  auto slope = hn::Zero(d);
+  for (int v = 0; v < spline_lanes; v += static_cast<int>(hn::Lanes(d))) {
+    auto sum = hn::LoadU(d, powers.slopes[support - 2] + v);
+    for (int m = support - 3; m >= 0; --m) sum = hn::MulAdd(sum, t, hn::LoadU(d, powers.slopes[m] + v));
+    slope = hn::MulAdd(sum, hn::LoadU(d, coefficients + v), slope);
+  }
+  return hn::GetLane(hn::SumOfLanes(d, slope));
+}
+
+HWY_ATTR HWY_INLINE double product_of(const double* a, const double* b, int count) {
+  const Lanes d;
+  auto sum = hn::Zero(d);
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d)))
+    sum = hn::MulAdd(hn::LoadU(d, a + v), hn::LoadU(d, b + v), sum);
+  return hn::GetLane(hn::SumOfLanes(d, sum));
+}
+
+/// Slopes of the closed forms.
+HWY_ATTR void evaluate_form_slopes(const EdgeRows& rows, const double* fixed, double* slopes) {
+  const Lanes d;
+  const auto lanes = hn::Lanes(d);
+  const auto one = hn::Set(d, 1.0), step = hn::Set(d, fixed[1] / pi), tail1 = hn::Set(d, fixed[2]),
+             tail3 = hn::Set(d, fixed[3]);
+  for (std::size_t i = 0; i < rows.size(); i += lanes) {
+    const auto x = hn::LoadU(d, rows.distances() + i);
+    const auto q = hn::Div(one, hn::MulAdd(x, x, one)), xq = hn::Mul(x, q), xq2 = hn::Mul(xq, xq);
+    const auto of_tail1 = hn::NegMulAdd(hn::Set(d, 2.0), xq2, q),
+               of_tail3 = hn::Mul(q, hn::NegMulAdd(hn::Set(d, 4.0), xq2, q));
+    const auto slope = hn::NegMulAdd(tail3, of_tail3, hn::NegMulAdd(tail1, of_tail1, hn::Mul(step, q)));
+    hn::StoreU(slope, d, slopes + i);
+  }
+}
+
+HWY_ATTR void evaluate(const EdgeRows& rows, double per_knot, const double* splines, const double* fixed,
+                       double* values, double* slopes) {
+  evaluate_form_slopes(rows, fixed, slopes);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    values[i] = product_of(rows.fixed(i), fixed, rows.fixed_lanes());
+    const int first = rows.first(i);
+    if (first < 0) continue;
+    values[i] += product_of(rows.splines(i), splines + first, spline_lanes);
+    slopes[i] += per_knot * spline_slope(rows.share(i), splines + first);
+  }
+}
+
+HWY_ATTR void project(const EdgeRows& rows, const double* functions, int count, double* sums) {
+  const std::size_t splines = rows.projections() - static_cast<std::size_t>(rows.fixed_lanes());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int first = rows.first(i);
+    double* of_function = sums;
+    for (int k = 0; k < count; ++k, of_function += rows.projections()) {
+      const double value = *functions++;
+      if (value == 0) continue;
+      add_multiple(value, rows.fixed(i), rows.fixed_lanes(), of_function + splines);
+      if (first >= 0) add_multiple(value, rows.splines(i), spline_lanes, of_function + first);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace petzval::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace petzval {
+
+HWY_EXPORT(make_rows);
+HWY_EXPORT(add_all_products);
+HWY_EXPORT(evaluate);
+HWY_EXPORT(project);
+
+namespace {
+
+std::size_t in_blocks(std::size_t points) {
+  return (points + spline_lanes - 1) / spline_lanes * spline_lanes;
+}
+
+}  // namespace
+
+EdgeRows::EdgeRows(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis)
+    : padded_(basis.splines + 2 * margin),
+      fixed_(basis.fixed()),
+      fixed_lanes_(fixed_ < 8 ? 8 : 16),
+      knot_px_(basis.knot_px),
+      rows_(points.size() * stride()),
+      distance_(in_blocks(points.size())),
+      share_(points.size()),
+      first_(points.size()) {
+  std::fill(distance_.begin() + static_cast<std::ptrdiff_t>(points.size()), distance_.end(), 0.0);
+  HWY_DYNAMIC_DISPATCH(make_rows)
+  (points, basis, {rows_.data(), distance_.data(), share_.data(), first_.data(), fixed_lanes_});
+}
+
+EdgeRows::Products EdgeRows::products(std::span<const double> weights) const {
+  const auto lanes = static_cast<std::size_t>(fixed_lanes_);
+  Products sums;
+  sums.columns.resize(static_cast<std::size_t>(padded_) * (spline_lanes + lanes));
+  sums.corner.resize(static_cast<std::size_t>(fixed_) * lanes);
+  HWY_DYNAMIC_DISPATCH(add_all_products)
+  (*this, weights.empty() ? nullptr : weights.data(), fixed_, sums.columns.data(), sums.corner.data());
+  return sums;
+}
+
+EdgeRows::Sums EdgeRows::evaluate(std::span<const double> splines, std::span<const double> fixed) const {
+  Sums sums;
+  sums.values.resize(size());
+  sums.slopes.resize(in_blocks(size()));
+  HWY_DYNAMIC_DISPATCH(evaluate)
+  (*this, 1 / knot_px_, splines.data(), fixed.data(), sums.values.data(), sums.slopes.data());
+  return sums;
+}
+
+std::vector<double> EdgeRows::project(std::span<const double> functions, int count) const {
+  std::vector<double> sums(static_cast<std::size_t>(count) * projections());
+  HWY_DYNAMIC_DISPATCH(project)(*this, functions.data(), count, sums.data());
+  return sums;
+}
+
+}  // namespace petzval
+#endif
