@@ -10,8 +10,8 @@ struct BorderedEntries {
   int band, border;
 };
 
-/// Solves L Lᵀ x = right in place. \param per_diagonal  reciprocals of the factor's diagonal. \param x  rows of
-/// eight.
+/// Solves L Lᵀ x = right in place. \param per_diagonal  reciprocals of the factor's diagonal. \param x  rows
+/// of eight.
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x);
 
 /// xᵀ M x of each vector. \param x  rows of eight. \param results  eight.

@@ -11,17 +11,18 @@
 namespace petzval {
 
 EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& line) {
-  std::vector<EdgeFrame::Place> places;
-  places.reserve(samples.size());
+  std::vector<EdgeFrame::Place> places(samples.size());
   double reach = 0;
   const EdgeFrame frame(line);
-  for (const EdgeSample& s : samples) {
-    places.push_back(frame.at(s.x, s.y));
-    reach = std::max(reach, std::abs(places.back().distance));
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    places[i] = frame.at(samples[i].x, samples[i].y);
+    reach = std::max(reach, std::abs(places[i].distance));
   }
   const int half = static_cast<int>(reach / 2) + 1;
   std::vector<int> count(2 * static_cast<std::size_t>(half) + 1);  // of cells two pixels wide
-  const auto cell = [&](double d) { return static_cast<std::size_t>(half + 0.5 + 0.5 * d); };
+  const auto cell = [&](double d) {
+    return static_cast<std::size_t>(static_cast<int>(half + 0.5 + 0.5 * d));
+  };
   for (const EdgeFrame::Place& place : places) ++count[cell(place.distance)];
   const auto middle = static_cast<std::size_t>(half);
   const int enough = std::max(4, count[middle] / 4);
@@ -31,14 +32,17 @@ EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine
   EdgeProfile profile;
   profile.low = 2 * (static_cast<double>(first) - half) - 1;
   profile.high = 2 * (static_cast<double>(last) - half) + 1;
-  profile.points.reserve(samples.size());
-  profile.sample.reserve(samples.size());
+  profile.points.resize(samples.size());
+  profile.sample.resize(samples.size());
+  std::size_t points = 0;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (places[i].distance >= profile.low && places[i].distance <= profile.high) {
-      profile.points.push_back({places[i].distance, samples[i].value, places[i].along, 0});
-      profile.sample.push_back(i);
+      profile.points[points] = {places[i].distance, samples[i].value, places[i].along, 0};
+      profile.sample[points++] = i;
     }
-  profile.variation.assign(profile.points.size(), 0.0);
+  profile.points.resize(points);
+  profile.sample.resize(points);
+  profile.variation.assign(points, 0.0);
   return profile;
 }
 

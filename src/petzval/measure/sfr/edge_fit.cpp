@@ -153,7 +153,7 @@ void EdgeFit::take_shapes(const std::optional<EdgeShapes>& shapes) {
 void EdgeFit::settle_by_evidence(const SfrOptions& options) {
   settle();
   if (options.edge_order == 0) bend_by_evidence();
-  if (options.varying_light) judge_light();
+  if (light_order_ > 0) judge_light();
 }
 
 /// Close to the pixel grid a profile in steps that stand between the rows of samples fits along a tilted line
@@ -197,7 +197,7 @@ void EdgeFit::find_missing(const std::function<double(double, double)>& missing_
     low = std::min(low, d), high = std::max(high, d);
   }
   const SmoothAboutEdge smooth(missing_target, line_, {low, high}, {13, 11});
-  for (const EdgeSample& s : samples_) missing_.push_back(smooth(s.x, s.y));
+  missing_ = smooth.at(samples_);
 }
 
 void EdgeFit::place_samples() {
@@ -237,7 +237,16 @@ void EdgeFit::fit_profile() {
   options.smoothing = smoothing_;
   if (in_rows_) options.prior.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
+  if (light_order_ == 1 && smoothing_ < 0) leave_out_even_light();
   take_profile();
+}
+
+/// Light that plainly does not matter need not be fitted until the line rests.
+void EdgeFit::leave_out_even_light() {
+  const double reach = std::min(-profile_.low, profile_.high);
+  if (model_->variation_over(reach) > 0.5 * least_variation) return;
+  light_order_ = 0;
+  model_->take_light_to_order(light_order_, profile_.points);
 }
 
 void EdgeFit::take_profile() {
@@ -321,14 +330,13 @@ void EdgeFit::bend_by_evidence() {
 
 bool EdgeFit::light_varies(double least_share) const {
   const double reach = std::min(-profile_.low, profile_.high);
-  const EdgeSpreadModel::Variation variation = model_->variation_over(reach, noise_);
-  return variation.significance > significant && variation.share > least_share;
+  return model_->variation_over(reach) > least_share && model_->variation_significance(noise_) > significant;
 }
 
 /// Keeps the light that varies as far as the samples show it, and tries a parabola where they do.
 void EdgeFit::judge_light() {
   const double reach = std::min(-profile_.low, profile_.high);
-  const double linear = 2 * model_->variation_over(reach, noise_).share;
+  const double linear = 2 * model_->variation_over(reach);
   if (light_varies(least_variation)) {
     light_variation_ = linear;
     light_order_ = 2;

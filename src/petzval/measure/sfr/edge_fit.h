@@ -55,6 +55,7 @@ class EdgeFit {
   void expect_light();
   void fit_placed();
   void fit_profile();
+  void leave_out_even_light();
   void take_profile();
   EdgeAlignment line_alignment() const;
   void bend_by_guess(const SfrOptions& options);

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_line.h>
+#include <petzval/measure/sfr/logistic_lanes.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -65,66 +66,57 @@ double gradient_direction(std::span<const EdgeSample> samples, double spacing, c
 /// Parameters: offset from the mean place along the normal, direction, log of the scale, dark, bright.
 class LogisticFit {
  public:
-  LogisticFit(std::span<const EdgeSample> samples, const Overview& o) : samples_(samples), o_(o) {}
+  LogisticFit(std::span<const EdgeSample> samples, const Overview& o) {
+    constexpr std::size_t together = 8;
+    const std::size_t size = (samples.size() + together - 1) / together * together;
+    for (std::vector<double>* each : {&samples_.x, &samples_.y, &samples_.value, &samples_.weight})
+      each->resize(size);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples_.x[i] = samples[i].x - o.x, samples_.y[i] = samples[i].y - o.y;
+      samples_.value[i] = samples[i].value, samples_.weight[i] = 1;
+    }
+  }
 
-  double cost(const Vector5& p) const { return accumulate(p, nullptr, nullptr); }
+  double cost(const Vector5& p) const { return sums_at(p).square; }
 
   /// \param least_gain  of a step, as a share of the cost; with less it ends.
   Vector5 run(Vector5 p, double least_gain) const {
-    Matrix5 normal, next_normal;
-    Vector5 gradient, next_gradient;
-    double damping = 1e-3, best = accumulate(p, &normal, &gradient);
+    double damping = 1e-3;
+    LogisticSums best = sums_at(p);
     for (int step = 0; step < 80; ++step) {
       bool improved = false;
       double gain = 0;
       for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
-        Matrix5 damped = normal;
-        damped.diagonal() *= 1 + damping;
-        damped.diagonal().array() += 1e-300;
-        const Vector5 next = p + damped.ldlt().solve(gradient);
-        const double value = next.allFinite() && std::abs(next[2]) < 12
-                                 ? accumulate(next, &next_normal, &next_gradient)
-                                 : HUGE_VAL;
-        if (value < best) {
-          gain = best - value;
-          p = next, best = value, damping *= 0.2, improved = true;
-          normal = next_normal, gradient = next_gradient;
-        } else {
-          damping *= 6;
-        }
+        const Vector5 next = p + change(best, damping);
+        if (next.allFinite() && std::abs(next[2]) < 12)
+          if (const LogisticSums sums = sums_at(next); sums.square < best.square) {
+            gain = best.square - sums.square;
+            p = next, best = sums, damping *= 0.2, improved = true;
+            continue;
+          }
+        damping *= 6;
       }
-      if (!improved || gain < least_gain * best) break;
+      if (!improved || gain < least_gain * best.square) break;
     }
     return p;
   }
 
  private:
-  double accumulate(const Vector5& p, Matrix5* normal, Vector5* gradient) const {
-    const double c = std::cos(p[1]), s = std::sin(p[1]), per_scale = std::exp(-p[2]), step = p[4] - p[3];
-    double sum = 0, products[5][5] = {}, right[5] = {};
-    for (const EdgeSample& sample : samples_) {
-      const double x = sample.x - o_.x, y = sample.y - o_.y;
-      const double z = (x * c + y * s - p[0]) * per_scale, profile = 1 / (1 + std::exp(-z));
-      const double residual = sample.value - p[3] - step * profile;
-      sum += residual * residual;
-      if (normal == nullptr) continue;
-      const double slope = step * profile * (1 - profile);
-      const double j[5] = {-slope * per_scale, slope * (y * c - x * s) * per_scale, -slope * z, 1 - profile,
-                           profile};
-      for (int r = 0; r < 5; ++r) {
-        for (int k = 0; k <= r; ++k) products[r][k] += j[r] * j[k];
-        right[r] += residual * j[r];
-      }
-    }
-    for (int r = 0; r < 5 && normal != nullptr; ++r) {
-      for (int k = 0; k <= r; ++k) (*normal)(r, k) = (*normal)(k, r) = products[r][k];
-      (*gradient)[r] = right[r];
-    }
-    return sum;
+  LogisticSums sums_at(const Vector5& p) const {
+    return logistic_sums(samples_, {p[0], p[1], p[2], p[3], p[4]});
   }
 
-  std::span<const EdgeSample> samples_;
-  const Overview& o_;
+  static Vector5 change(const LogisticSums& sums, double damping) {
+    Matrix5 damped;
+    auto product = sums.normal.begin();
+    for (int r = 0; r < 5; ++r)
+      for (int k = 0; k <= r; ++k) damped(r, k) = damped(k, r) = *product++;
+    damped.diagonal() *= 1 + damping;
+    damped.diagonal().array() += 1e-300;
+    return damped.ldlt().solve(Eigen::Map<const Vector5>(sums.right.data()));
+  }
+
+  LogisticSamples samples_;
 };
 
 /// Enough samples for a guess, evenly taken but not in step with the rows.

@@ -7,9 +7,9 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/measure/sfr/edge_rows.cpp"
+#include <hwy/contrib/math/math-inl.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <hwy/contrib/math/math-inl.h>
 
 #ifndef PETZVAL_EDGE_ROWS_PASSED
 #define PETZVAL_EDGE_ROWS_PASSED
@@ -85,6 +85,11 @@ HWY_ATTR void make_splines(double share, double* splines) {
   }
 }
 
+HWY_ATTR HWY_INLINE void clear(double* values, int count) {
+  const Lanes d;
+  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d))) hn::StoreU(hn::Zero(d), d, values + v);
+}
+
 HWY_ATTR void make_fixed(const EdgePoint& point, double core_px, int light_order, double* fixed) {
   if (light_order > 0) {
     fixed[4] = point.light * point.along;
@@ -110,7 +115,7 @@ HWY_ATTR void make_rows(std::span<const EdgePoint> points, const EdgeSpreadBasis
     evaluate_forms(at, core_px, per_knot);
     for (std::size_t i = 0; i < count; ++i, row += made.fixed_lanes + spline_room) {
       const EdgePoint& point = points[begin + i];
-      std::fill_n(row, made.fixed_lanes + spline_room, 0.0);
+      clear(row, made.fixed_lanes + spline_room);
       row[0] = 1, row[1] = at.step[i], row[2] = at.tail1[i], row[3] = at.tail3[i];
       make_fixed(point, core_px, basis.light_order, row);
       row[made.fixed_lanes - 1] = point.value;
@@ -193,30 +198,48 @@ HWY_ATTR void evaluate_form_slopes(const EdgeRows& rows, const double* fixed, do
   }
 }
 
+template <int fixed_lanes>
 HWY_ATTR void evaluate(const EdgeRows& rows, double per_knot, const double* splines, const double* fixed,
                        double* values, double* slopes) {
-  evaluate_form_slopes(rows, fixed, slopes);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    values[i] = product_of(rows.fixed(i), fixed, rows.fixed_lanes());
+    const double* const row = rows.fixed(i);
+    values[i] = product_of(row, fixed, fixed_lanes);
     const int first = rows.first(i);
     if (first < 0) continue;
-    values[i] += product_of(rows.splines(i), splines + first, spline_lanes);
+    values[i] += product_of(row + fixed_lanes, splines + first, spline_lanes);
     slopes[i] += per_knot * spline_slope(rows.share(i), splines + first);
   }
 }
 
+HWY_ATTR void evaluate_all(const EdgeRows& rows, double per_knot, const double* splines, const double* fixed,
+                           double* values, double* slopes) {
+  evaluate_form_slopes(rows, fixed, slopes);
+  if (rows.fixed_lanes() == 8)
+    evaluate<8>(rows, per_knot, splines, fixed, values, slopes);
+  else
+    evaluate<16>(rows, per_knot, splines, fixed, values, slopes);
+}
+
+template <int fixed_lanes>
 HWY_ATTR void project(const EdgeRows& rows, const double* functions, int count, double* sums) {
-  const std::size_t splines = rows.projections() - static_cast<std::size_t>(rows.fixed_lanes());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  const std::size_t stride = rows.projections();
+  double* const of_fixed = sums + stride - fixed_lanes;
+  for (std::size_t i = 0; i < rows.size(); ++i, functions += count) {
     const int first = rows.first(i);
-    double* of_function = sums;
-    for (int k = 0; k < count; ++k, of_function += rows.projections()) {
-      const double value = *functions++;
-      if (value == 0) continue;
-      add_multiple(value, rows.fixed(i), rows.fixed_lanes(), of_function + splines);
-      if (first >= 0) add_multiple(value, rows.splines(i), spline_lanes, of_function + first);
+    const double *const fixed = rows.fixed(i), *const splines = fixed + fixed_lanes;
+    for (int k = 0; k < count; ++k) {
+      const std::ptrdiff_t at = k * static_cast<std::ptrdiff_t>(stride);
+      add_multiple(functions[k], fixed, fixed_lanes, of_fixed + at);
+      if (first >= 0) add_multiple(functions[k], splines, spline_lanes, sums + at + first);
     }
   }
+}
+
+HWY_ATTR void project_all(const EdgeRows& rows, const double* functions, int count, double* sums) {
+  if (rows.fixed_lanes() == 8)
+    project<8>(rows, functions, count, sums);
+  else
+    project<16>(rows, functions, count, sums);
 }
 
 }  // namespace
@@ -228,8 +251,8 @@ namespace petzval {
 
 HWY_EXPORT(make_rows);
 HWY_EXPORT(add_all_products);
-HWY_EXPORT(evaluate);
-HWY_EXPORT(project);
+HWY_EXPORT(evaluate_all);
+HWY_EXPORT(project_all);
 
 namespace {
 
@@ -267,14 +290,14 @@ EdgeRows::Sums EdgeRows::evaluate(std::span<const double> splines, std::span<con
   Sums sums;
   sums.values.resize(size());
   sums.slopes.resize(in_blocks(size()));
-  HWY_DYNAMIC_DISPATCH(evaluate)
+  HWY_DYNAMIC_DISPATCH(evaluate_all)
   (*this, 1 / knot_px_, splines.data(), fixed.data(), sums.values.data(), sums.slopes.data());
   return sums;
 }
 
 std::vector<double> EdgeRows::project(std::span<const double> functions, int count) const {
   std::vector<double> sums(static_cast<std::size_t>(count) * projections());
-  HWY_DYNAMIC_DISPATCH(project)(*this, functions.data(), count, sums.data());
+  HWY_DYNAMIC_DISPATCH(project_all)(*this, functions.data(), count, sums.data());
   return sums;
 }
 

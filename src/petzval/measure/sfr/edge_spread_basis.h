@@ -49,6 +49,10 @@ struct EdgeSpreadBasis {
   int tail1() const { return splines + 2; }
   int tail3() const { return splines + 3; }
   int shape(int k) const { return splines + closed_forms + k; }
+  /// Where the terms of the highest order begin.
+  int first_highest_light() const {
+    return light_terms[static_cast<std::size_t>(std::max(0, light_order - 1))];
+  }
   int lights() const { return light_terms[static_cast<std::size_t>(light_order)]; }
   /// The functions that reach everywhere and that samples touch.
   int fixed() const { return closed_forms + lights(); }

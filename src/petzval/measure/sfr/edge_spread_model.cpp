@@ -72,6 +72,7 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
 void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> points) {
   if (order >= options_.light_order) return;
   options_.light_order = basis_.light_order = order;
+  options_.smoothing = -1;
   fit(points);
 }
 
@@ -96,8 +97,10 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   for (int r = 0; r < basis_.fixed(); ++r)
     right_[basis_.place(r)] = sums_.corner[static_cast<std::size_t>((r + 1) * lanes - 1)];
   const EdgePrior prior(options_.prior, basis_, high - low);
+  priors_ = BorderedBand(basis_.splines, basis_.border());
+  prior.add_first_part(priors_);
   BorderedBand normal = data_normal_;
-  prior.add_first_part(normal);
+  normal.add(1, priors_);
   const double count = static_cast<double>(points.size());
   const double unit = count * options_.knot_px / (2 * options_.core_px);
   const BorderedBand rough = prior.roughness();
@@ -138,8 +141,6 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     options_.smoothing = std::max(options_.smoothing, EdgePrior::least_weight);
     best = solve(options_.smoothing);
   }
-  priors_ = std::move(normal);
-  priors_.add(-1, data_normal_);
   priors_.add(options_.smoothing * unit, rough);
   coefficients_ = best.solution;
   factor_ = std::move(best.factor);
@@ -153,7 +154,8 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points, std::ve
   std::vector<double> splines(static_cast<std::size_t>(rows_.padded() + EdgeRows::spline_lanes));
   std::vector<double> fixed(static_cast<std::size_t>(rows_.fixed_lanes()));
   std::copy_n(coefficients_.data(), basis_.splines, splines.begin() + margin);
-  for (int r = 0; r < basis_.fixed(); ++r) fixed[static_cast<std::size_t>(r)] = coefficients_[basis_.place(r)];
+  for (int r = 0; r < basis_.fixed(); ++r)
+    fixed[static_cast<std::size_t>(r)] = coefficients_[basis_.place(r)];
   const EdgeRows::Sums sums = rows_.evaluate(splines, fixed);
   const double half_tail = 0.5 * (b / pi * fixed[1] + fixed[2]);
   fitted.resize(points.size());
@@ -161,7 +163,8 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points, std::ve
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double* const row = rows_.fixed(i);
     double variation = half_tail * points[i].missing;
-    for (int r = closed_forms; r < basis_.fixed(); ++r) variation += fixed[static_cast<std::size_t>(r)] * row[r];
+    for (int r = closed_forms; r < basis_.fixed(); ++r)
+      variation += fixed[static_cast<std::size_t>(r)] * row[r];
     fitted[i] = {sums.values[i] - variation, sums.slopes[i]};
     variations[i] = variation;
   }
@@ -189,22 +192,25 @@ double EdgeSpreadModel::tail_px() const {
   return b / pi + coefficients_[basis_.tail1()] / step_;
 }
 
-EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, double noise) const {
-  Variation result;
-  if (options_.light_order == 0) return result;
+double EdgeSpreadModel::variation_over(double reach_px) const {
   const double reach = reach_px / options_.core_px;
   const std::array<double, EdgeSpreadBasis::light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
-  for (int k = EdgeSpreadBasis::light_terms[static_cast<std::size_t>(options_.light_order - 1)];
-       k < basis_.lights(); ++k) {
+  double share = 0;
+  for (int k = basis_.first_highest_light(); k < basis_.lights(); ++k)
+    share = std::max(share, std::abs(coefficients_[basis_.place(closed_forms + k)] / step_) *
+                                reaches[static_cast<std::size_t>(k)]);
+  return share;
+}
+
+double EdgeSpreadModel::variation_significance(double noise) const {
+  double significance = 0;
+  for (int k = basis_.first_highest_light(); k < basis_.lights(); ++k) {
     const Eigen::Index at = basis_.place(closed_forms + k);
     const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
-    const double coefficient = std::abs(coefficients_[at]);
-    result.significance = std::max(result.significance,
-                                   coefficient / std::max(1e-300, noise * std::sqrt(std::max(0.0, spread))));
-    result.share =
-        std::max(result.share, coefficient * reaches[static_cast<std::size_t>(k)] / std::abs(step_));
+    significance = std::max(significance, std::abs(coefficients_[at]) /
+                                              std::max(1e-300, noise * std::sqrt(std::max(0.0, spread))));
   }
-  return result;
+  return significance;
 }
 
 double EdgeSpreadModel::unknowns() const {
@@ -227,7 +233,7 @@ Eigen::Matrix<double, functions, functions> EdgeSpreadModel::taken_of(std::span<
 
 template Eigen::Matrix<double, 2, 2> EdgeSpreadModel::taken_of<2>(std::span<const double>) const;
 template Eigen::Matrix<double, 4, 4> EdgeSpreadModel::taken_of<4>(std::span<const double>) const;
-template Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes> EdgeSpreadModel::taken_of<
-    BorderedBand::lanes>(std::span<const double>) const;
+template Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes>
+    EdgeSpreadModel::taken_of<BorderedBand::lanes>(std::span<const double>) const;
 
 }  // namespace petzval

@@ -46,7 +46,7 @@ class EdgeSpreadModel {
  public:
   /// \throws InputError when the points do not determine the model.
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
-  /// The same, of the same points, with light of a lower order.
+  /// The same, of the same points, with light of a lower order. The evidence chooses the smoothing.
   void take_light_to_order(int order, std::span<const EdgePoint> points);
   /// The same, of the same points, with another prior, whose weight the evidence chooses.
   void take_prior(const EdgePriorOptions& prior, std::span<const EdgePoint> points);
@@ -62,12 +62,10 @@ class EdgeSpreadModel {
   /// light that varies, and a target that is no half-plane, add there.
   void evaluate_points(std::span<const EdgePoint> points, std::vector<ValueAndSlope>& fitted,
                        std::vector<double>& variations) const;
-  /// The terms of the highest order of light that varies: over their standard deviations, and the largest
-  /// share of the step that they make within `reach_px` of the edge.
-  struct Variation {
-    double significance = 0, share = 0;
-  };
-  Variation variation_over(double reach_px, double noise) const;
+  /// Of the terms of the highest order of light that varies: the largest share of the step that they make
+  /// within `reach_px` of the edge, and how many standard deviations they are.
+  double variation_over(double reach_px) const;
+  double variation_significance(double noise) const;
 
   double dark() const { return dark_; }
   double step() const { return step_; }
@@ -86,9 +84,9 @@ class EdgeSpreadModel {
   double criterion() const { return criterion_; }
 
   /// What the profile can take of other functions of the points, so that these and it can be fitted together
-  /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): sums over the points
-  /// that the model was made from of the products of what it takes. \param values  of the functions at each
-  /// point, one after the other. `functions` is 2, 4 or BorderedBand::lanes.
+  /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973): sums over the
+  /// points that the model was made from of the products of what it takes. \param values  of the functions at
+  /// each point, one after the other. `functions` is 2, 4 or BorderedBand::lanes.
   template <int functions>
   Eigen::Matrix<double, functions, functions> taken_of(std::span<const double> values) const;
 
@@ -129,8 +127,8 @@ class EdgeSpreadModel {
   EdgeSpreadBasis basis_;
   double dark_ = 0, step_ = 1, criterion_ = 0;
   Eigen::VectorXd coefficients_;
-  EdgeRows rows_;            ///< of the points
-  EdgeRows::Products sums_;  ///< over them
+  EdgeRows rows_;             ///< of the points
+  EdgeRows::Products sums_;   ///< over them
   BorderedBand data_normal_;  ///< of the unknowns
   Eigen::VectorXd right_;     ///< side of the normal equations
   BorderedBand priors_;       ///< of the priors and the roughness

@@ -63,8 +63,8 @@ std::vector<std::complex<double>> EdgeSpreadModel::transforms(Frequencies freque
   std::vector<std::complex<double>> values;
   values.reserve(frequencies_cpp.size());
   for_eight(frequencies_cpp, [&](std::size_t, Frequencies some) {
-    const SplineSums sums = spline_sums(phases_of(some, options_.knot_px, basis_.splines),
-                                        coefficients_.data(), basis_.splines);
+    const SplineSums sums =
+        spline_sums(phases_of(some, options_.knot_px, basis_.splines), coefficients_.data(), basis_.splines);
     for (std::size_t k = 0; k < some.size(); ++k) {
       const FormTransforms forms(some[k], options_.knot_px);
       // Σ c (cos − i sin) times i·spline.

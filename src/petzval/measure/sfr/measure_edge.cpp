@@ -95,8 +95,8 @@ class LevelSearch {
   /// Where to look in the next round.
   double next(int round) const {
     // Alternately where a chord passes and in the middle, so that both ends close in.
-    const double at = round % 3 == 2 ? 0.5 * (low_ + high_)
-                                     : low_ + (high_ - low_) * low_rest_ / (low_rest_ - high_rest_);
+    const double at =
+        round % 3 == 2 ? 0.5 * (low_ + high_) : low_ + (high_ - low_) * low_rest_ / (low_rest_ - high_rest_);
     return std::clamp(at, low_, high_);
   }
   void take(double at, double contrast) {
@@ -180,22 +180,29 @@ class Uncertainty {
   std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp,
                                 const std::vector<std::complex<double>>& transforms) const {
     std::vector<double> deviations = noise_.of_moduli(frequencies_cpp, transforms);
+    const std::vector<double> differences = from_variant(frequencies_cpp, transforms, deviations);
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       const double f = frequencies_cpp[i];
       constexpr double all_of_it_cpp = 0.02;
-      const double model = std::hypot(difference(f, std::abs(transforms[i]), deviations[i]),
-                                      tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
+      const double model = std::hypot(differences[i], tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
       deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
     }
     return deviations;
   }
 
  private:
-  /// From the variant, beyond what noise alone makes of a difference from a part of the samples.
-  double difference(double frequency_cpp, double modulus, double noise) const {
-    if (!variant_) return 0;
-    const double all = std::abs(variant_->model.transform(frequency_cpp)) - modulus;
-    return std::sqrt(std::max(0.0, all * all - noise * noise * (1 / variant_->share - 1)));
+  /// Differences from the variant, beyond what noise alone makes of those from a part of the samples.
+  std::vector<double> from_variant(const std::vector<double>& frequencies_cpp,
+                                   const std::vector<std::complex<double>>& transforms,
+                                   const std::vector<double>& noise) const {
+    std::vector<double> differences(frequencies_cpp.size());
+    if (!variant_) return differences;
+    const std::vector<std::complex<double>> others = variant_->model.transforms(frequencies_cpp);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const double all = std::abs(others[i]) - std::abs(transforms[i]);
+      differences[i] = std::sqrt(std::max(0.0, all * all - noise[i] * noise[i] * (1 / variant_->share - 1)));
+    }
+    return differences;
   }
 
   const EdgeFit& fit_;

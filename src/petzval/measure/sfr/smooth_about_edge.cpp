@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/units.h>
+#include <petzval/measure/sfr/chebyshev_lanes.h>
 #include <petzval/measure/sfr/smooth_about_edge.h>
 
 #include <algorithm>
@@ -42,11 +43,6 @@ void to_coefficients(double* values, int count, int stride) {
   for (int k = 0; k < count; ++k) values[k * stride] = result[k];
 }
 
-void chebyshev_polynomials(double x, int count, double* values) {
-  values[0] = 1, values[1] = x;
-  for (int k = 2; k < count; ++k) values[k] = 2 * x * values[k - 1] - values[k - 2];
-}
-
 }  // namespace
 
 SmoothAboutEdge::SmoothAboutEdge(const std::function<double(double x, double y)>& function,
@@ -77,16 +73,21 @@ SmoothAboutEdge::SmoothAboutEdge(const std::function<double(double x, double y)>
 }
 
 double SmoothAboutEdge::operator()(double x, double y) const {
-  const double dx = x - line_.centre_x, dy = y - line_.centre_y;
-  double along[most_along];
-  Across across;
-  chebyshev_polynomials(std::clamp((dy * cos_ - dx * sin_) / line_.half_length, -1.0, 1.0),
-                        static_cast<int>(coefficients_.size()), along);
-  chebyshev_polynomials(std::clamp((dx * cos_ + dy * sin_ - middle_) * per_half_, -1.0, 1.0), most_across,
-                        across.data());
-  Across sum = Across::Zero();
-  for (std::size_t i = 0; i < coefficients_.size(); ++i) sum += along[i] * coefficients_[i];
-  return (sum * across).sum();
+  const EdgeSample sample{x, y, 0};
+  return at({&sample, 1}).front();
+}
+
+std::vector<double> SmoothAboutEdge::at(std::span<const EdgeSample> samples) const {
+  std::vector<double> along(samples.size()), across(samples.size()), sums(samples.size());
+  if (coefficients_.empty()) return sums;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double dx = samples[i].x - line_.centre_x, dy = samples[i].y - line_.centre_y;
+    along[i] = (dy * cos_ - dx * sin_) / line_.half_length;
+    across[i] = (dx * cos_ + dy * sin_ - middle_) * per_half_;
+  }
+  chebyshev_sums({coefficients_.front().data(), static_cast<int>(coefficients_.size()), most_across}, along,
+                 across, sums);
+  return sums;
 }
 
 }  // namespace petzval

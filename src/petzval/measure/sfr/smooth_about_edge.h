@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace petzval {
@@ -27,6 +28,8 @@ class SmoothAboutEdge {
   SmoothAboutEdge(const std::function<double(double x, double y)>& function, const EdgeLine& line,
                   DistanceRange range, Nodes nodes);
   double operator()(double x, double y) const;
+  /// The same at each of the samples.
+  std::vector<double> at(std::span<const EdgeSample> samples) const;
 
  private:
   EdgeLine line_;  ///< without its bend

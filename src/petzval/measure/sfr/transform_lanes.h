@@ -12,8 +12,8 @@ struct SplinePhases {
   std::array<double, count> cosine, sine, turn_cosine, turn_sine;
 };
 
-/// Σ_j c_j cos(φ_j) and Σ_j c_j sin(φ_j), where φ grows from spline to spline by the turn and is odd about the
-/// middle of all.
+/// Σ_j c_j cos(φ_j) and Σ_j c_j sin(φ_j), where φ grows from spline to spline by the turn and is odd about
+/// the middle of all.
 struct SplineSums {
   std::array<double, SplinePhases::count> even, odd;
 };
