@@ -30,7 +30,7 @@ HWY_ATTR HWY_INLINE Vector sum_at(const ChebyshevTerms& terms, Vector x, Vector 
   const auto twice_x = hn::Add(x, x), twice_y = hn::Add(y, y);
   auto before = x, polynomial = hn::Set(d, 1.0), sum = hn::Zero(d);  // T₋₁ = T₁
   for (int i = 0; i < terms.along; ++i) {
-    const double* const c = terms.coefficients + i * terms.across;
+    const double* const c = terms.coefficients + i * terms.stride;
     auto last = hn::Zero(d), here = hn::Set(d, c[terms.across - 1]);
     for (int j = terms.across - 2; j > 0; --j) {
       const auto next = hn::MulAdd(twice_y, here, hn::Sub(hn::Set(d, c[j]), last));
@@ -51,7 +51,7 @@ HWY_ATTR void sums_at(const ChebyshevTerms& terms, std::span<const double> x, st
     double places[2][eight] = {}, values[eight];
     std::copy_n(x.data() + begin, count, places[0]);
     std::copy_n(y.data() + begin, count, places[1]);
-    for (std::size_t v = 0; v < eight; v += hn::Lanes(d))
+    for (std::size_t v = 0; v < count; v += hn::Lanes(d))
       hn::StoreU(sum_at(terms, within(hn::LoadU(d, places[0] + v)), within(hn::LoadU(d, places[1] + v))), d,
                  values + v);
     std::copy_n(values, count, sums.data() + begin);

@@ -6,10 +6,11 @@
 
 namespace petzval {
 
-/// Coefficients of T_i(x) T_j(y), for each i those of all j.
+/// Coefficients of T_i(x) T_j(y), for each i those of all j, the first of them `stride` apart.
 struct ChebyshevTerms {
   const double* coefficients;
   int along, across;  ///< at least one and two
+  int stride;
 };
 
 /// Sums at (x[k], y[k]); coordinates beyond −1 to 1 are taken for these.

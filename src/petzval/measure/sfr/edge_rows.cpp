@@ -7,9 +7,10 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/measure/sfr/edge_rows.cpp"
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// Read once for every instruction set, too, and so after the first.
+#include <hwy/contrib/math/math-inl.h>
 
 #ifndef PETZVAL_EDGE_ROWS_PASSED
 #define PETZVAL_EDGE_ROWS_PASSED

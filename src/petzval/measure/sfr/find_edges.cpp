@@ -192,9 +192,11 @@ std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
   const auto [left, right] = range(axis.middle.x, along * ux + across * uy, plane.columns);
   const auto [top, bottom] = range(axis.middle.y, along * uy + across * ux, plane.rows);
   std::vector<EdgeSample> samples;
-  for (int row = top; row < bottom; ++row)
-    for (int column = left; column < right; ++column) {
-      if (column % lattice.step != lattice.column || row % lattice.step != lattice.row) continue;
+  const auto first_of = [&](int from, int place) {
+    return from + (place - from % lattice.step + lattice.step) % lattice.step;
+  };
+  for (int row = first_of(top, lattice.row); row < bottom; row += lattice.step)
+    for (int column = first_of(left, lattice.column); column < right; column += lattice.step) {
       const ContourPoint p{column + 0.5, row + 0.5};
       const double d = axis.across(p), t = axis.along(p);
       if (t >= edge.sampled_from && t <= edge.sampled_to && d <= edge.reach_bright_px &&

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "petzval/measure/sfr/logistic_lanes.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
+// Read once for every instruction set, too, and so after the first.
 #include <hwy/contrib/math/math-inl.h>
 
 HWY_BEFORE_NAMESPACE();

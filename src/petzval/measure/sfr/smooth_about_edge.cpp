@@ -67,27 +67,42 @@ SmoothAboutEdge::SmoothAboutEdge(const std::function<double(double x, double y)>
   for (int j = 0; j < nodes.across; ++j)
     to_coefficients(coefficients_.front().data() + j, nodes.along, most_across);
   for (const Across& across : coefficients_) sum += across.abs().sum();
-  constexpr double negligible = 1e-6;
-  while (!coefficients_.empty() && !(coefficients_.back().abs().maxCoeff() > negligible * sum))
+  const double negligible = 1e-6 * sum;
+  while (!coefficients_.empty() && !(coefficients_.back().abs().maxCoeff() > negligible))
     coefficients_.pop_back();
+  nodes_.along = static_cast<int>(coefficients_.size());
+  const auto nearly_nothing = [&](int j) {
+    return std::ranges::all_of(coefficients_,
+                               [&](const Across& c) { return !(std::abs(c[j]) > negligible); });
+  };
+  while (nodes_.across > 2 && nearly_nothing(nodes_.across - 1)) --nodes_.across;
 }
 
 double SmoothAboutEdge::operator()(double x, double y) const {
-  const EdgeSample sample{x, y, 0};
-  return at({&sample, 1}).front();
+  const double dx = x - line_.centre_x, dy = y - line_.centre_y;
+  const double along = (dy * cos_ - dx * sin_) / line_.half_length,
+               across = (dx * cos_ + dy * sin_ - middle_) * per_half_;
+  double value = 0;
+  at({&along, 1}, {&across, 1}, {&value, 1});
+  return value;
 }
 
 std::vector<double> SmoothAboutEdge::at(std::span<const EdgeSample> samples) const {
-  std::vector<double> along(samples.size()), across(samples.size()), sums(samples.size());
-  if (coefficients_.empty()) return sums;
+  std::vector<double> along(samples.size()), across(samples.size()), values(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double dx = samples[i].x - line_.centre_x, dy = samples[i].y - line_.centre_y;
     along[i] = (dy * cos_ - dx * sin_) / line_.half_length;
     across[i] = (dx * cos_ + dy * sin_ - middle_) * per_half_;
   }
-  chebyshev_sums({coefficients_.front().data(), static_cast<int>(coefficients_.size()), most_across}, along,
-                 across, sums);
-  return sums;
+  at(along, across, values);
+  return values;
+}
+
+void SmoothAboutEdge::at(std::span<const double> along, std::span<const double> across,
+                         std::span<double> values) const {
+  if (nodes_.along > 0)
+    chebyshev_sums({coefficients_.front().data(), nodes_.along, nodes_.across, most_across}, along, across,
+                   values);
 }
 
 }  // namespace petzval

@@ -34,10 +34,10 @@ class SmoothAboutEdge {
  private:
   EdgeLine line_;  ///< without its bend
   double cos_, sin_, middle_, per_half_;
-  Nodes nodes_;
+  Nodes nodes_;  ///< and as many polynomials that are not nearly nothing
+  void at(std::span<const double> along, std::span<const double> across, std::span<double> values) const;
   using Across = Eigen::Array<double, most_across, 1>;
-  std::vector<Across>
-      coefficients_;  ///< of each polynomial along; those that are nearly nothing are left out
+  std::vector<Across> coefficients_;  ///< of each polynomial along
 };
 
 }  // namespace petzval
