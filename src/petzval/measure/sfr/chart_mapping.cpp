@@ -24,7 +24,7 @@ struct RoundOutline {
 std::vector<RoundOutline> round_outlines(const Plane& plane) {
   constexpr std::size_t least_points = 8;
   constexpr double least_roundness = 0.7;  // 4πA/P², 1 for a circle, 0.79 for a square
-  const Plane drawn = quiet(plane);
+  const Plane drawn = quiet(plane, noise_share(plane));
   std::vector<RoundOutline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     if (!contour.closed) continue;

@@ -46,12 +46,14 @@ EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine
   return profile;
 }
 
-void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess) {
+void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess, double reach_px) {
   const double step = guess.bright - guess.dark;
-  profile.fitted.clear();
-  for (const EdgePoint& point : profile.points) {
-    const double share = 1 / (1 + std::exp(-point.distance / guess.scale_px));
-    profile.fitted.push_back({guess.dark + step * share, step / guess.scale_px * share * (1 - share)});
+  profile.fitted.assign(profile.points.size(), {});
+  for (std::size_t i = 0; i < profile.points.size(); ++i) {
+    const double distance = profile.points[i].distance;
+    if (std::abs(distance) > reach_px) continue;
+    const double share = 1 / (1 + std::exp(-distance / guess.scale_px));
+    profile.fitted[i] = {guess.dark + step * share, step / guess.scale_px * share * (1 - share)};
   }
 }
 

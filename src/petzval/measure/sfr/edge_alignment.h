@@ -26,8 +26,8 @@ struct EdgeProfile {
 /// edge.
 EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& line);
 
-/// Takes the logistic profile of the guess for the fitted one.
-void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess);
+/// Takes the logistic profile of the guess for the fitted one, as far as `reach_px` from the edge.
+void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess, double reach_px);
 
 /// What a Gauss-Newton step would do to direction and bends.
 struct EdgeAlignment {

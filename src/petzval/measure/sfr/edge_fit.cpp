@@ -236,7 +236,7 @@ void EdgeFit::fit_profile() {
   options.light_order = light_order_;
   options.smoothing = smoothing_;
   if (in_rows_) options.prior.least_smoothing_share = 0.03;
-  model_.emplace(profile_.points, options);
+  model_.emplace(profile_.points, options, model_ ? model_->release() : EdgeRows());
   if (light_order_ == 1 && smoothing_ < 0) leave_out_even_light();
   take_profile();
 }
@@ -278,7 +278,7 @@ void EdgeFit::bend_by_guess(const SfrOptions& options) {
   EdgeAlignment change;
   for (int round = 0; round < rounds; ++round) {
     EdgeProfile profile = profile_along(near, bent);
-    fit_logistic(profile, guess_);
+    fit_logistic(profile, guess_, reach);
     change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
     if (align(bent, change, 1) < 1e-3) break;
   }

@@ -263,15 +263,15 @@ std::size_t in_blocks(std::size_t points) {
 
 }  // namespace
 
-EdgeRows::EdgeRows(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis)
-    : padded_(basis.splines + 2 * margin),
-      fixed_(basis.fixed()),
-      fixed_lanes_(fixed_ < 8 ? 8 : 16),
-      knot_px_(basis.knot_px),
-      rows_(points.size() * stride()),
-      distance_(in_blocks(points.size())),
-      share_(points.size()),
-      first_(points.size()) {
+void EdgeRows::make(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis) {
+  padded_ = basis.splines + 2 * margin;
+  fixed_ = basis.fixed();
+  fixed_lanes_ = fixed_ < 8 ? 8 : 16;
+  knot_px_ = basis.knot_px;
+  rows_.resize(points.size() * stride());
+  distance_.resize(in_blocks(points.size()));
+  share_.resize(points.size());
+  first_.resize(points.size());
   std::fill(distance_.begin() + static_cast<std::ptrdiff_t>(points.size()), distance_.end(), 0.0);
   HWY_DYNAMIC_DISPATCH(make_rows)
   (points, basis, {rows_.data(), distance_.data(), share_.data(), first_.data(), fixed_lanes_});

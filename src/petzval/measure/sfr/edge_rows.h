@@ -28,8 +28,8 @@ class EdgeRows {
   /// Room for the splines of a row in sums, and, with zeros behind them, in rows.
   static constexpr int spline_lanes = 8, spline_room = 16;
 
-  EdgeRows() = default;
-  EdgeRows(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis);
+  /// Rows of other points; memory is kept.
+  void make(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis);
 
   std::size_t size() const { return first_.size(); }
   /// Of the splines of a row, counted from `margin` before the first unknown; −1: none.

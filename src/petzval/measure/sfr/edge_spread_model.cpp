@@ -59,12 +59,14 @@ BorderedBand EdgeSpreadModel::normal_of(const EdgeRows::Products& sums) const {
   return result;
 }
 
-EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options)
+EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options,
+                                 EdgeRows memory)
     : options_(options),
       basis_{EdgeSpreadBasis::splines_within(options.core_px, options.knot_px), options.knot_px,
-             options.light_order, options.prior.shapes ? EdgeShapes::count - 1 : 0} {
+             options.light_order, options.prior.shapes ? EdgeShapes::count - 1 : 0},
+      rows_(std::move(memory)) {
   options_.core_px = basis_.core_px();
-  rows_ = EdgeRows(points, basis_);
+  rows_.make(points, basis_);
   sums_ = rows_.products();
   fit(points);
 }

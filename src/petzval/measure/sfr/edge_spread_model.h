@@ -12,6 +12,7 @@
 #include <array>
 #include <complex>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -44,8 +45,9 @@ struct EdgeSpreadOptions {
 /// vignetting take the same share of both sides. It belongs to no transform.
 class EdgeSpreadModel {
  public:
-  /// \throws InputError when the points do not determine the model.
-  EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
+  /// \param memory  of a model that is needed no more. \throws InputError when the points do not determine
+  /// the model.
+  EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options, EdgeRows memory = {});
   /// The same, of the same points, with light of a lower order. The evidence chooses the smoothing.
   void take_light_to_order(int order, std::span<const EdgePoint> points);
   /// The same, of the same points, with another prior, whose weight the evidence chooses.
@@ -66,6 +68,9 @@ class EdgeSpreadModel {
   /// within `reach_px` of the edge, and how many standard deviations they are.
   double variation_over(double reach_px) const;
   double variation_significance(double noise) const;
+
+  /// The memory for one of other points; nothing else may be asked afterwards.
+  EdgeRows release() { return std::move(rows_); }
 
   double dark() const { return dark_; }
   double step() const { return step_; }

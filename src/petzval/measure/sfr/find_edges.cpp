@@ -145,8 +145,8 @@ EdgeLine FoundEdge::line() const {
 FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr std::size_t least_points = 24;
   constexpr double least_reach_px = 4;
-  const Plane drawn = quiet(plane);
   const double noise = noise_share(plane);
+  const Plane drawn = quiet(plane, noise);
   std::vector<TargetOutline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     std::vector<ContourPoint> corners = straightened(contour, options.tolerance_px);

@@ -10,7 +10,8 @@ namespace petzval {
 /// of their neighbours to the left and right.
 double noise_share(const Plane& plane);
 
-/// What contours are drawn through: with noise of a hundredth of the contrast and more, smoothed.
-Plane quiet(const Plane& plane);
+/// What contours are drawn through: with noise of a hundredth of the contrast and more, smoothed. \param
+/// share noise_share() of it.
+Plane quiet(const Plane& plane, double share);
 
 }  // namespace petzval
