@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ struct SfrOptions {
   std::function<double(double x, double y)> missing_target;
   /// Pixel values from which on the sensor clips, or up to which it does: such pixels spoil an edge.
   std::optional<double> clip_low, clip_high;
-  /// The light of each code value, rising, where values have been rounded to them; empty: they have not.
-  std::vector<double> code_levels;
+  /// The light of each code value, rising, where values have been rounded to them; empty: they have not. They
+  /// outlive the options.
+  std::span<const double> code_levels;
   /// Edges that are plainly bent to a smaller radius are refused; 0: none are.
   double least_radius_px = 0;
   /// Where the edge is known to run already; its direction points from dark to bright.

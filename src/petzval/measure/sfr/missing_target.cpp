@@ -20,9 +20,9 @@ double distance_from(const OutlineSide& side, const ContourPoint& p) {
 
 MissingTarget::MissingTarget(const FoundEdge& edge, bool sampled) {
   // ∬ r⁻³ dA = −∮ (x·n)/r³ ds, n outward: the outlines of what is bright, the other way round …
-  std::vector<Side> far;
-  const auto add = [](std::vector<Side>& sides, const ContourPoint& from, const ContourPoint& to) {
-    sides.push_back({from, {to.x - from.x, to.y - from.y}});
+  FluxSides far;
+  const auto add = [](FluxSides& sides, const ContourPoint& from, const ContourPoint& to) {
+    sides.add(from.x, from.y, to.x - from.x, to.y - from.y);
   };
   EdgeLine line = edge.line();
   const double nx = std::cos(line.normal_rad), ny = std::sin(line.normal_rad), ex = ny, ey = -nx;
@@ -41,30 +41,12 @@ MissingTarget::MissingTarget(const FoundEdge& edge, bool sampled) {
   if (far.empty()) return;
   // At 1.5 times the radius seven nodes are good to 2.6⁻⁷ = 1e-3 of what those sides add, which is 1e-3 of
   // the step.
-  far_.emplace([&](double x, double y) { return flux(far, x, y); }, line,
+  far_.emplace([&](double x, double y) { return far.flux(x, y); }, line,
                DistanceRange{-edge.reach_dark_px, edge.reach_bright_px}, SmoothAboutEdge::Nodes{7, 7});
 }
 
-double MissingTarget::flux(const std::vector<Side>& sides, double x, double y) {
-  // ∫ (x·n)/r³ ds along a straight line, n to the left of its way in the picture (the dark side), by the
-  // vectors a and b to its ends: (a × b) (|a| + |b|) / (|a||b| (|a||b| + a·b)), as in the law of Biot &
-  // Savart. Between its ends the same with (|a||b|)² − (a·b)² = (a × b)², so that nothing cancels.
-  constexpr double on_it = 1e-9;
-  double sum = 0;
-  for (const Side& side : sides) {
-    const double ax = side.from.x - x, ay = side.from.y - y;
-    const double bx = ax + side.way.x, by = ay + side.way.y;
-    const double a2 = ax * ax + ay * ay, b2 = bx * bx + by * by, ab = std::sqrt(a2 * b2);
-    const double cross = ax * side.way.y - ay * side.way.x, along = ax * bx + ay * by;
-    if (std::abs(cross) < on_it) continue;
-    const double ends = std::sqrt(a2 + b2 + 2 * ab);  // |a| + |b|
-    sum += ends / ab * (along > 0 ? cross / (ab + along) : (ab - along) / cross);
-  }
-  return sum;
-}
-
 double MissingTarget::operator()(double x, double y) const {
-  return flux(near_, x, y) + (far_ ? (*far_)(x, y) : 0);
+  return near_.flux(x, y) + (far_ ? (*far_)(x, y) : 0);
 }
 
 }  // namespace petzval

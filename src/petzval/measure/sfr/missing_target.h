@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/measure/sfr/find_edges.h>
+#include <petzval/measure/sfr/flux_lanes.h>
 #include <petzval/measure/sfr/smooth_about_edge.h>
 
 #include <optional>
@@ -22,11 +23,7 @@ class MissingTarget {
 
  private:
   MissingTarget(const FoundEdge& edge, bool sampled);
-  struct Side {
-    ContourPoint from, way;
-  };
-  static double flux(const std::vector<Side>& sides, double x, double y);
-  std::vector<Side> near_;
+  FluxSides near_;
   std::optional<SmoothAboutEdge> far_;  ///< sides far enough to change little over the samples
 };
 
