@@ -22,12 +22,6 @@ int below(const BorderedBand& matrix, int column) {
 BorderedBand::BorderedBand(int band, int border)
     : band_(band), border_(border), entries_(static_cast<std::size_t>(band + border) * stride()) {}
 
-void BorderedBand::drop_border(int unknowns) {
-  BorderedBand kept(band_, border_ - unknowns);
-  for (int j = 0; j < kept.size(); ++j) std::copy_n(column(j), kept.stride(), kept.column(j));
-  *this = std::move(kept);
-}
-
 void BorderedBand::add(double factor, const BorderedBand& other) {
   for (std::size_t i = 0; i < entries_.size(); ++i) entries_[i] += factor * other.entries_[i];
 }

@@ -36,8 +36,6 @@ class BorderedBand {
   /// border.
   double* column(int j) { return entries_.data() + static_cast<std::size_t>(j) * stride(); }
   const double* column(int j) const { return entries_.data() + static_cast<std::size_t>(j) * stride(); }
-  /// Leaves out the last unknowns of the border.
-  void drop_border(int unknowns);
   /// Adds a multiple of a matrix of the same shape.
   void add(double factor, const BorderedBand& other);
   /// xᵀ M x of each vector.
