@@ -47,6 +47,15 @@ class Arrays(ProgramTest):
             raws.append(np.load(self.folder / "raw.npy"))
         np.testing.assert_array_equal(*raws)
 
+    def test_text_beside_the_light_is_left_out(self):
+        light = {"irradiance": np.full((4, 5, 1), 1e-4), "wavelengths_nm": [550], "pitch_um": 3.45}
+        sense = ["sense", "light.npz", "--sensor", "icx625-mono", "-o", "raw.npy"]
+        for text in ("night", b"night", np.array(["night"], ">U5"), np.array([b"a", b"bc"])):
+            np.savez(self.folder / "light.npz", note=text, **light)
+            self.assert_succeeds(*sense)
+        np.savez(self.folder / "light.npz", **{**light, "irradiance": np.array([b"night"])})
+        self.assert_refused(*sense, words=["light.npz", "irradiance"])
+
     def test_arrays_that_are_no_light(self):
         sense = ["--sensor", "icx625-mono", "-o", "raw.npy"]
         np.save(self.folder / "light.npy", np.ones((4, 5, 3)))

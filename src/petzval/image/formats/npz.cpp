@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 namespace petzval {
@@ -56,6 +57,16 @@ std::string entry_bytes(zip_t* archive, zip_uint64_t index, std::size_t size, co
   if (bytes.size() < size || got < 0 || zip_fread(file.get(), &beyond, 1) != 0)
     throw InputError(path, "is damaged: an array cannot be unpacked");
   return bytes;
+}
+
+/// Whether a .npy file holds text: NumPy's types U (characters) and S (bytes), of any byte order and length.
+bool holds_text(std::string_view npy) {
+  constexpr std::string_view key = "'descr': '";
+  const std::string_view header = npy.substr(0, 128);
+  const std::size_t at = header.find(key);
+  if (at == header.npos || at + key.size() + 1 >= header.size()) return false;
+  const char kind = header[at + key.size() + 1];  // behind the byte order
+  return kind == 'U' || kind == 'S';
 }
 
 }  // namespace
@@ -109,7 +120,7 @@ std::vector<NamedArray> read_npz(const std::string& path) {
     if (stat.size > most_bytes - total) throw InputError(path, "holds more than 4 GiB of numbers");
     total += stat.size;
     std::string bytes = entry_bytes(archive.get(), at, stat.size, path);
-    if (bytes.substr(0, 128).find("'descr': '<U") != std::string::npos) continue;
+    if (holds_text(bytes)) continue;
     arrays.push_back({name, array_of(NpyFile(std::move(bytes), path + ": " + quotable(name)))});
   }
   return arrays;
