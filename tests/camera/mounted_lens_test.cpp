@@ -218,6 +218,9 @@ TEST(MountedLens, MovesTheSensorAndNothingElse) {
   EXPECT_THROW(camera.move_sensor_mm(-71), InputError);
   EXPECT_THROW(camera.set_image_distance_mm(0), InputError);
   EXPECT_THROW(camera.set_image_distance_mm(std::nan("")), InputError);
+  EXPECT_THROW(camera.set_image_distance_mm(1.001e6), InputError);
+  EXPECT_THROW(camera.move_sensor_mm(1e9), InputError);
+  EXPECT_NO_THROW(camera.set_image_distance_mm(1e6));
 }
 
 TEST(MountedLens, MovingTheWholeLensKeepsObjectAndSensor) {

@@ -134,6 +134,8 @@ class LensAnalyses(ProgramTest):
         self.assert_refused("lens", "spots", "cooke-triplet", "--f-number", "2", words=["opens to f/5"])
         self.assert_refused("lens", "spots", "cooke-triplet", "--focus", "infinity", "--image-distance", "40",
                             words=["--image-distance"])
+        for option in ("--defocus", "--move-lens", "--image-distance"):
+            self.assert_refused("lens", "mtf", "cooke-triplet", option, "1e9", words=["1e+09 mm", "1e+06 mm would be right"])
         self.assert_refused("lens", "report", "cooke-triplet", "-o", "report.pdf", words=[".html"])
         self.assert_refused("lens", "zernike", "cooke-triplet", "--terms", "38", words=["37"])
         self.assert_refused("lens", "fans", "cooke-triplet", "--fields", "80", words=["80"])

@@ -17,6 +17,15 @@ namespace {
 constexpr double f_number_rounding = 0.005;
 /// An object this near (relative) to the prescription's own is the prescription's own: nothing moves.
 constexpr double same_object = 1e-12;
+/// A path as long is known to 1e-10 mm: 1e-6 waves, and the phases of waves stay known after many surfaces.
+constexpr double farthest_sensor_mm = 1e6;
+
+void refuse_distant_sensor(double distance_mm, const Lens& lens) {
+  if (distance_mm > farthest_sensor_mm)
+    throw InputError(
+        fmt::format("the sensor would stand {:g} mm behind lens {}; up to {:g} mm would be right",
+                    distance_mm, lens.name, farthest_sensor_mm));
+}
 
 /// Paraxial transfer from vertex 1 to the last vertex: y' = a·y + b·u, u' = c·y + d·u. An object s in front
 /// of vertex 1 has its image i = −(a·s + b)/(c·s + d) behind the last vertex.
@@ -197,6 +206,7 @@ void MountedLens::set_image_distance_mm(double distance_mm) {
     throw InputError(
         fmt::format("the sensor would stand {:g} mm behind the last surface of lens {}; it must be behind it",
                     distance_mm, prescription_.name));
+  refuse_distant_sensor(distance_mm, prescription_);
   use(lens_.object_distance_mm, distance_mm);
 }
 
@@ -214,6 +224,7 @@ void MountedLens::move_lens_mm(double towards_object_mm) {
   if (!(std::isfinite(image_mm) && image_mm > 0))
     throw InputError(fmt::format("moved by {:g} mm, lens {} would touch its sensor", towards_object_mm,
                                  prescription_.name));
+  refuse_distant_sensor(image_mm, prescription_);
   use(object_mm, image_mm);
 }
 

@@ -47,7 +47,7 @@ class MountedLens {
   /// Keeps the prescription's object and sensor.
   void focus_as_designed();
   /// Puts the sensor this far behind the last vertex; the object stays as far in front of the lens as it is.
-  /// \throws InputError unless the distance is positive and finite.
+  /// \throws InputError unless that is above 0 and up to 1 km: beyond, paths lack digits for waves.
   void set_image_distance_mm(double distance_mm);
   /// Moves the sensor away from the lens (negative: towards it), from where it is. \throws InputError if it
   /// would touch the lens.
