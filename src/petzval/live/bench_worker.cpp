@@ -49,9 +49,10 @@ BenchWorker::~BenchWorker() {
 }
 
 void BenchWorker::end() {
+  // Not between what work() reads of one and writes to the other, which would let a picture go on to its end.
+  const std::lock_guard lock(mutex_);
   ending_ = true;
   something_new_ = true;
-  const std::lock_guard lock(mutex_);
   woken_.notify_all();
 }
 
