@@ -16,6 +16,7 @@
 #include <petzval/tolerance/tolerancing.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -169,6 +170,27 @@ void refuse_unknown_options(const CLI::App& command, const std::string& way,
   }
 }
 
+/// CLI11 drops the empty words of lists and would take 1,,2 for two numbers.
+void refuse_empty_words(const CLI::App& command, const std::vector<std::string>& words) {
+  const CLI::Option* list = nullptr;
+  for (const std::string& word : words) {
+    if (word == "--") return;
+    std::string text = word;
+    if (word.size() > 1 && word[0] == '-' && (word[1] == '-' || std::isalpha(word[1]))) {
+      const std::size_t equals = std::min(word.find('='), word.size());
+      list = command.get_option_no_throw(word.substr(0, equals));
+      if (list && list->get_delimiter() != ',') list = nullptr;
+      if (equals == word.size()) continue;
+      text = word.substr(equals + 1);
+    }
+    if (!list) continue;
+    for (const std::string& part : split_at(text, ','))
+      if (trimmed(part).empty())
+        throw InputError(fmt::format("{} {}: an empty word; {} would be right", list->get_name(),
+                                     quotable(text), right_word(*list)));
+  }
+}
+
 }  // namespace
 
 void refuse_unknown_words(const CLI::App& program, const std::vector<std::string>& words) {
@@ -191,6 +213,7 @@ void refuse_unknown_words(const CLI::App& program, const std::vector<std::string
     at = known[static_cast<std::size_t>(found - names.begin())];
   }
   refuse_unknown_options(*at, way, words);
+  refuse_empty_words(*at, words);
 }
 
 namespace {

@@ -45,7 +45,7 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       std::function<void()> work);
 
 /// \throws InputError when the words of a command line name a command or an option that does not exist, with
-/// the nearest that do.
+/// the nearest that do, and when a list has an empty word.
 void refuse_unknown_words(const CLI::App& program, const std::vector<std::string>& words);
 
 /// What a word of an option has to be: "a number", "a whole number", "a value".

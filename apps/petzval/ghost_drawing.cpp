@@ -5,6 +5,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
 #include <petzval/flare/ghost_fan.h>
 #include <petzval/report/colours.h>
@@ -24,7 +25,7 @@ namespace {
 GhostPair parsed_pair(const std::string& text, std::size_t sensor) {
   std::vector<std::size_t> turns;
   bool right = true;
-  for (const std::string& part : CLI::detail::split(text, ',')) {
+  for (const std::string& part : split_at(text, ',')) {
     const std::optional<int> surface = parse_integer(part);
     right = right && surface && *surface >= 0 && static_cast<std::size_t>(*surface) <= sensor;
     turns.push_back(right ? static_cast<std::size_t>(*surface) : 0);

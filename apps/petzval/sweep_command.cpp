@@ -274,6 +274,9 @@ SweepFrames frames_of(const CLI::App& app, const SweepCommand& options, const st
 
 void sweep(const CLI::App& program, const SweepCommand& options, const Shared& shared) {
   const CLI::App& app = swept_app(program, options);
+  std::vector<std::string> words{options.command};
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  refuse_unknown_words(program, words);
   std::vector<SweptParameter> parameters;
   std::vector<std::string> notes;
   for (const std::string& text : options.vary) parameters.push_back(parse_swept(text, notes, options.frames));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 
 #include <charconv>
 #include <cmath>
@@ -120,6 +121,8 @@ Photosite TargetOptics::site() const {
   } else if (kind == "polygon") {
     result.shape = Photosite::Shape::polygon;
     std::string rest = sizes;
+    if (rest.empty() || rest.ends_with(','))
+      throw InputError(fmt::format("--photosite {}: polygon:x,y,... would be right", quotable(photosite)));
     while (!rest.empty()) {
       std::size_t end = rest.find(',');
       end = end == std::string::npos ? end : rest.find(',', end + 1);

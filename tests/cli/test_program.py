@@ -53,6 +53,42 @@ class Program(ProgramTest):
             self.assert_refused(*image, f"--build={word}", words=[f"--build: {word} is not a whole number from 0 on"])
         self.assert_refused(*image[:-1], "x" * 4000 + ".npy", words=["too long a name"])
 
+    def test_lists_with_an_empty_word(self):
+        lens, light = "edmund-54852", ["light.npy", "--sensor", "icx625-mono"]
+        lists = [
+            (["lens", "mtf", lens], ("--frequencies", "--weights", "--fields", "--wavelengths")),
+            (["lens", "encircled-energy", lens], ("--radii",)),
+            (["lens", "report", lens, "-o", "x.html"], ("--frequencies",)),
+            (["lens", "transfer", lens], ("--bands",)),
+            (["lens", "draw", lens, "-o", "x.svg"], ("--film-heights",)),
+            (["lens", "steps", lens], ("--stop", "--wavelengths")),
+            (["lens", "ghosts", lens, "-o", "x.svg"], ("--draw",)),
+            (["image", "wall", "--lens", lens, "-o", "x.npy"], ("--bracket", "--wavelengths")),
+            (["sense", *light, "-o", "x.npy"], ("--bracket", "--wavelengths")),
+            (["target", "--rectangle", "9x9", "-o", "x.npy"], ("--wavelength", "--weights", "--at")),
+            (["render", "spheres", "-o", "x.exr"], ("--region", "--camera-at", "--look-at")),
+            (["measure", "colour", "x.png"], ("--corners",)),
+        ]
+        for command, options in lists:
+            for option in options:
+                for word in (",1", "1,,2", "1,2,"):
+                    self.assert_refused(*command, f"{option}={word}", words=[option, word, "right"])
+        for command, option, word, right in [
+            (["lens", "mtf", lens], "--weights", "1,,2", "a number would be right"),
+            (["lens", "mtf", lens], "--weights", ",", "a number would be right"),
+            (["image", "wall"], "--bracket", "-2,,2", "a number would be right"),
+            (["image", "wall"], "--without", "dark,,read", "a value would be right"),
+            (["measure", "matrix", "full-frame-24mp"], "--lights", "D65,", "a value would be right"),
+            (["sweep", "image", "wall"], "--keep", "exr,", "a value would be right"),
+            (["sweep", "image", "wall", "--vary", "f-number=4,8", "-o", "x"], "--bracket", "-2,,2", "a number would be right"),
+            (["sweep", "lens", "mtf", lens, "--vary", "f-number=4,8", "-o", "x"], "--weights", "1,", "a number would be right"),
+        ]:
+            self.assert_refused(*command, option, word, words=[f"{option} {word}: an empty word; {right}"])
+        self.assert_refused("target", "--rectangle", "9x9", "--photosite", "polygon:0,0,1,0,1,1,", "-o", "x.npy",
+                            words=["--photosite polygon:0,0,1,0,1,1,: polygon:x,y,... would be right"])
+        # What --output holds is no list.
+        self.assert_succeeds("lens", "mtf", lens, "--frequencies", "10", "--plot", "a,,b.svg")
+
     def test_help_is_a_command_too(self):
         for words in ([], ["image"], ["lens", "mtf"]):
             self.assertEqual(self.assert_succeeds("help", *words), self.assert_succeeds(*words, "--help"))
