@@ -85,7 +85,6 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const Outputs& mad
       {"cells_per_pixel", image.report.imaging.cells_per_pixel},
       {"estimated_error", image.report.imaging.estimated_error()},
       {"tail_pixels", image.report.imaging.tail_pixels},
-      {"finer_detail_error", image.report.imaging.finer_detail_error},
       {"distortion_seconds", image.report.imaging.distortion_seconds},
       {"blur_seconds", image.report.imaging.blur_seconds},
       {"kernel_seconds", image.report.imaging.kernel_seconds},

@@ -3,7 +3,6 @@
 #include "imaging/synthetic_table.h"
 
 #include <gtest/gtest.h>
-#include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/distortion.h>
 #include <petzval/imaging/scene_rows.h>
 #include <petzval/scene/chart_canvas.h>
@@ -217,34 +216,6 @@ TEST(SceneLook, FindsThePlaceOfTheImageThatSeesASample) {
         EXPECT_NEAR(place->y_mm, y, 1e-7);
       }
   }
-}
-
-/// A half-plane in squares of half the side: half as many are crossed. The spectrum of a drawing goes on
-/// below its samples as that of samples eight times finer does.
-TEST(DetailSpectrum, OfADrawingGoesOnBelowItsSamples) {
-  ChartOptions options = chart(256, 192, {550});
-  const DetailSpectrum coarse = detail_of(slanted_edge_chart(options, 20), 0);
-  options.columns *= 8, options.rows *= 8;
-  const Scene fine_scene = slanted_edge_chart(options, 20);
-  const DetailSpectrum fine = detail_of(fine_scene, 0);
-  EXPECT_TRUE(coarse.drawn);
-  ASSERT_EQ(coarse.finest_side, fine.finest_side);
-  // Squares of 1/4, 1/2 and 1 coarse samples, which the finer samples hold.
-  for (std::size_t level = 4; level < 7; ++level)
-    EXPECT_NEAR(coarse.variances[level] / fine.variances[level + 3], 1, 0.1) << level;
-}
-
-/// Squares of 16 samples: of pairs of samples along a row, a sixteenth has an edge in its middle, and so
-/// along a column, wherever pairs begin.
-TEST(DetailSpectrum, SeesEdgesThatLieBetweenSquaresOfEverySize) {
-  const Scene board = checkerboard_chart(chart(256, 192, {550}), 16);
-  const double white = double(board.drawing()->figures[0].radiance[0]);
-  const DetailSpectrum detail = detail_of(board, 0);
-  ASSERT_TRUE(detail.drawn);
-  std::size_t samples = 0;  // the level of squares of two samples
-  for (double side = detail.finest_side; side < 1; side *= 2) ++samples;
-  const double across = 15.0 / 127, down = 11.0 / 95, crossed = across + down - across * down;
-  EXPECT_NEAR(detail.variances[samples] / (white * white / 4), crossed / 2, 1e-6);
 }
 
 }  // namespace

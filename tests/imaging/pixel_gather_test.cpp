@@ -70,19 +70,6 @@ TEST(PixelGather, WeightsTakeAllLight) {
     EXPECT_NEAR(pixel_taps(wanted, 3, {SourceFilter(2), true}).transform(0, 0), 1, 1e-9) << wanted.text();
 }
 
-// Of light that a perfect lens images, and of a real one: more cells, less error; the estimate is that of the
-// closed form.
-TEST(PixelGather, MoreCellsHoldMoreDetail) {
-  const auto mtf = [](double f) { return std::max(0.0, 1 - f / 2); };
-  double before = 1;
-  for (const int cells : {1, 2, 3, 4}) {
-    const LightPath path{SourceFilter(2), true};
-    const double error = taps_error(pixel_taps(plain, cells, path), plain, path, 0.8, mtf);
-    EXPECT_LT(error, before / 2) << cells;
-    before = error;
-  }
-}
-
 TEST(PixelGather, PixelsAreWhereTheCellsAre) {
   // Light that rises linearly: the mean over any symmetric photosite is the value at the pixel's centre.
   const SensorGeometry sensor{5, 4, 6.0};

@@ -2,58 +2,49 @@
 // How many cells a pixel needs, by the scene's own detail and the lens.
 #pragma once
 
+#include <petzval/imaging/frame_transfer.h>
 #include <petzval/imaging/image_formation.h>
-
-#include <vector>
+#include <petzval/imaging/scene_detail.h>
 
 namespace petzval {
 
-/// What of a scene's contrast is how fine: one band of it.
-struct DetailSpectrum {
-  double mean = 0;
-  /// The variance within squares of 2, 4, 8 … times the finest side that is not within those of half the
-  /// side: the mean of squares from the first sample on and of those from the second on.
-  std::vector<double> variances;
-  double finest_side = 1;  ///< [samples]
-  bool drawn = false;      ///< figures, not straight lines between samples
-};
-/// Of a drawing, below the samples: an edge is met by half as many squares of half the side, so each step
-/// down has half the variance.
-DetailSpectrum detail_of(const Scene& scene, int band);
+/// Relative L2 errors of a picture whose pixels are so many cells wide, whatever the blur method: detail that
+/// cells cannot hold, and kernels' samples that mistake one frequency for another. Power of the scene's
+/// detail times the square of what comes out wrong of it, zone by zone of the frame, over that of the
+/// picture.
+class SamplingErrors {
+ public:
+  /// \param site  must outlive it.
+  SamplingErrors(const SceneDetail& detail, const FrameTransfer& lens, const Photosite& site, int cells);
+  /// \param source  on the way to the cells; kernels have a window.
+  double with(const SourceFilter& source) const;
 
-/// A relative L2 error of a picture.
-struct SamplingError {
-  double error = 0;
-  double finer = 0;  ///< the part of detail of a drawing finer than pixels can hold
-
-  /// Whether it leaves half of the tolerance to the blur. All of it may be √3/2 of the tolerance, but half
-  /// without finer detail: what is estimated of that is more than is there.
-  bool is_within(double tolerance) const {
-    return error * error - finer * finer <= tolerance * tolerance / 4 &&
-           error * error <= 0.75 * tolerance * tolerance;
-  }
+ private:
+  const Photosite& site_;
+  int cells_;
+  double light_ = 0;
+  std::vector<PassedWaves> power_;  ///< by DetailBands, of all zones: times the power of the detail
 };
 
-/// The relative L2 error of a picture whose pixels are so many cells wide, whatever the blur method: detail
-/// that cells cannot hold, and kernels' samples that mistake one frequency for another. The edges of a
-/// drawing have no end of detail: what is beyond half a cycle a pixel, and a sample, is `finer`.
-///
-/// \param samples_per_pixel  of the scene, along a side. \param mtf  of the lens over cycles/pixel.
-SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
-                             int cells, const LightPath& path, const std::function<double(double)>& mtf);
-
-/// How many cells a pixel gets, and the sampling_error() that they leave.
+/// How many cells a pixel gets, and the SamplingErrors that they leave, with a caution for waves aslant.
 struct CellChoice {
   int cells = 1;
-  SamplingError sampling = {};
+  int parts = 1;         ///< of a cell, along a side
+  double threefold = 0;  ///< SourceFilter, both
+  bool window = true;    ///< LightPath
+  double sampling_error = 0;
   /// Standard deviation of the light of cells over its mean, were all detail of the scene as strong as its
   /// finest: large for lights in darkness.
   double contrast = 0;
+
+  /// What light goes through on its way to the cells. \param points  of the scene along a cell: no part of it
+  /// may see more than one.
+  LightPath path(int points = 1) const;
 };
 
-/// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and
-/// through the table's MTF, RMS over the frame, is within the tolerance (SamplingError::is_within): 2 at
-/// least, but for tolerances of 3·10⁻³ and more, and ImagingOptions::most_cells at most.
+/// In the scene's middle band, the cells and the source filter that take the least work of those whose error
+/// leaves the blur what it may take of the tolerance: 2 cells at least, but for previews, and
+/// ImagingOptions::most_cells at most. Where the options name the cells, the filter of the least error.
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options);
 

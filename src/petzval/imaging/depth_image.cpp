@@ -72,7 +72,7 @@ class DepthImaging {
       says().scene_points_per_cell = std::max(says().scene_points_per_cell, points_per_cell(plans, frame_));
     }
     says().cells_per_pixel = options_.cells_per_pixel();
-    path_ = options_.light_path(says().scene_points_per_cell);
+    path_ = choice_.path(says().scene_points_per_cell);
     taps_ = pixel_taps(options_.photosite, options_.cells_per_pixel(), path_);
   }
 
@@ -95,9 +95,9 @@ class DepthImaging {
     const auto layer = static_cast<std::size_t>(largest - layers_.layers.begin());
     const LensDataTable& table = ends_.emplace(layer, table_of(layer, options)).first->second;
     const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
-    const CellChoice choice = choose_cells(planar.light(scene_.bands() / 2), table, sensor_, options);
-    options.supersample = choice.cells;
-    says().sampling_error = choice.sampling.error;
+    choice_ = choose_cells(planar.light(scene_.bands() / 2), table, sensor_, options);
+    options.supersample = choice_.cells;
+    says().sampling_error = choice_.sampling_error;
     return options;
   }
 
@@ -179,6 +179,7 @@ class DepthImaging {
   std::size_t layer_ = 0;                      ///< at work
   std::optional<ProductPlan> kept_;            ///< of the last layer's first band
   int planned_margin_ = 1;                     ///< of the layer where its tiles were chosen
+  CellChoice choice_;                          ///< of the largest layer
   const ImagingOptions options_;
   const SensorGeometry frame_;
   LightPath path_;

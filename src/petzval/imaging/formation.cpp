@@ -88,13 +88,12 @@ Formation::Formation(const Scene& of_scene, const LensDataTable& of_table, const
   options.supersample = choice.cells;
   contrast = choice.contrast;
   of_all.table_error = table.interpolation_error;
-  of_all.sampling_error = choice.sampling.error;
-  of_all.finer_detail_error = choice.sampling.finer;
+  of_all.sampling_error = choice.sampling_error;
   frame = options.cells_of(sensor);
   plans = plan_bands(scene, table, frame, options);
   of_all.scene_points_per_cell = points_per_cell(plans, frame);
   of_all.cells_per_pixel = options.cells_per_pixel();
-  path = options.light_path(of_all.scene_points_per_cell);
+  path = choice.path(of_all.scene_points_per_cell);
   taps = pixel_taps(options.photosite, of_all.cells_per_pixel, path);
 }
 

@@ -123,12 +123,6 @@ SensorGeometry ImagingOptions::cells_of(const SensorGeometry& sensor) const {
   return grown(subdivided(sensor, cells), taps_reach(photosite, cells, method == BlurMethod::none));
 }
 
-LightPath ImagingOptions::light_path(int points) const {
-  constexpr int least_parts = 2;  // a plain mean over a cell would leave too much beyond its frequency
-  if (method == BlurMethod::none) return {SourceFilter(1), false};
-  return {SourceFilter(std::max(least_parts, points)), true};
-}
-
 void ImagingOptions::validate() const {
   if (supersample < 0 || supersample > most_cells)
     throw InputError(

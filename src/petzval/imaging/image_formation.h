@@ -59,11 +59,9 @@ struct ImagingOptions {
   /// The cells whose light makes the pixels of a sensor: S × S to a pixel, and those about the frame that its
   /// pixels share in.
   SensorGeometry cells_of(const SensorGeometry& sensor) const;
-  /// What light goes through on its way to the cells of a pixel. \param points  of the scene along a cell.
-  LightPath light_path(int points) const;
   /// Whether the tolerance lets a picture be formed of less: one cell a pixel, coarser kernels, fewer PSFs.
   bool is_preview() const { return method == BlurMethod::product && product.tolerance >= of_a_preview; }
-  static constexpr double of_a_preview = 3e-3;
+  static constexpr double of_a_preview = 5e-3;
   bool by_sections() const { return method == BlurMethod::sections || method == BlurMethod::blended; }
   /// The sections of the method.
   SectionOptions section_options() const;
@@ -85,7 +83,6 @@ struct ImagingReport {
   ProductPlan product = {};
   int scene_points_per_cell = 1;  ///< parts of a cell whose means over the scene are taken: this squared
   double sampling_error = 0;      ///< of the cells, estimated for the middle band
-  double finer_detail_error = 0;  ///< its part of detail of a chart finer than pixels can hold
   /// Light farther from its chief ray than this was formed on coarser pixels [pixels]; 0: none was.
   int tail_pixels = 0;
   double table_error = 0;  ///< LensDataTable::interpolation_error

@@ -15,7 +15,7 @@ namespace petzval {
 ///
 /// PSFs lie at fields that options.field_count asks for, or up to eight times closer as long as the image
 /// does not turn back inwards (HeightTable::last_rising_field()). The middle wavelength chooses, then the
-/// first and the last. Previews, from a tolerance of 3·10⁻³ on, go by the middle wavelength and the fields
+/// first and the last. Previews, from a tolerance of 5·10⁻³ on, go by the middle wavelength and the fields
 /// asked for, and a wall may differ by a tenth of the tolerance; from 10⁻² on light is sampled as coarsely as
 /// the cells allow (CoarseLight), and by rays where waves carry too little of it beyond them. Chief rays and
 /// illumination are those of all fields asked for and of all with a PSF.

@@ -23,8 +23,8 @@ struct PsfReach {
 };
 
 /// Steps along a cell of the lattices on which PSFs lie that kernels are taken from. Of light seen through
-/// the window cubic splines between four steps miss 5·10⁻⁵; two are for previews, at a quarter of the work.
-enum class LatticeSteps { fine = 4, coarse = 2 };
+/// the window cubic splines between four steps miss 5·10⁻⁵; three are for previews, at half the work.
+enum class LatticeSteps { fine = 4, coarse = 3 };
 
 /// The kernels of one wavelength on cells of one size, at every place of the image. Made by field height
 /// (HeightKernels) or over the frame in two dimensions (FrameKernels); whoever follows the light knows

@@ -171,16 +171,6 @@ PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path) {
   return taps;
 }
 
-double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath& path, double f_cpp,
-                  const std::function<double(double)>& mtf) {
-  const double out = taps.transform(f_cpp, 0) * path.source.transform(f_cpp / taps.cells);
-  const auto through = [&](double at) { return mtf(std::abs(at)) * path.of_window(at / taps.cells); };
-  double squares = std::pow(out * through(f_cpp) - site.transform(f_cpp, 0).real() * mtf(f_cpp), 2);
-  if (path.window)
-    for (const int alias : aliases) squares += std::pow(out * through(f_cpp - alias * taps.cells), 2);
-  return std::sqrt(squares);
-}
-
 CellPlane gathered(CellPlane plane, const PixelTaps& taps, RowRange wanted) {
   if (taps.size() == 1) return plane;  // of whose dark rows nothing came
   const SensorGeometry inner = grown(plane.grid, -taps.reach);

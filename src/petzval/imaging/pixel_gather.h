@@ -6,7 +6,6 @@
 #include <petzval/imaging/source_light.h>
 #include <petzval/wave/photosite.h>
 
-#include <functional>
 #include <vector>
 
 namespace petzval {
@@ -51,12 +50,6 @@ int taps_reach(const Photosite& site, int cells, bool exact);
 /// axis; the dots of a filter are a product of such, an ellipse a sum of eight strips. \throws InputError as
 /// check_photosite().
 PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path);
-
-/// By how much a frequency along the columns comes out wrong, relative to its contrast in the scene: what is
-/// missing, and what comes out at the kernels' other frequencies in its place. \param f_cpp  [cycles/pixel].
-/// \param mtf  of the lens over frequency [cycles/pixel].
-double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath& path, double f_cpp,
-                  const std::function<double(double)>& mtf);
 
 /// \param plane  S × S cells to a pixel and taps.reach more all around. \param wanted  rows of pixels; others
 /// are dark. \returns the plane of pixels.

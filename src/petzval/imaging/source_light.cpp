@@ -97,16 +97,19 @@ class PartRows {
 
 }  // namespace
 
-SourceFilter::SourceFilter(int cell_parts) : parts(cell_parts) {
-  if (parts == 1) return;
-  constexpr int means = 3;
-  for (int mean = 0; mean < means; ++mean) {
-    std::vector<double> wider(weights.size() + static_cast<std::size_t>(parts) - 1);
+SourceFilter::SourceFilter(int cell_parts, double threefold) : parts(cell_parts) {
+  const auto count = static_cast<std::size_t>(parts);
+  const std::vector<double> plain(count, 1.0 / parts);
+  weights = plain;
+  if (threefold == 0) return;
+  for (int mean = 1; mean < 3; ++mean) {
+    std::vector<double> wider(weights.size() + count - 1);
     for (std::size_t i = 0; i < weights.size(); ++i)
-      for (std::size_t part = 0; part < static_cast<std::size_t>(parts); ++part)
-        wider[i + part] += weights[i] / parts;
+      for (std::size_t part = 0; part < count; ++part) wider[i + part] += weights[i] / parts;
     weights = std::move(wider);
   }
+  for (double& weight : weights) weight *= threefold;
+  for (std::size_t part = 0; part < count; ++part) weights[count - 1 + part] += (1 - threefold) * plain[part];
 }
 
 double SourceFilter::transform(double frequency) const {

@@ -11,15 +11,17 @@
 
 namespace petzval {
 
-/// How source cells share in the light of parts of cells: three means over a cell's width, one after the
-/// other. What is finer than cells can hold would come back as detail that is not there; a plain mean over a
-/// cell leaves a third of it at the frequency of the cells' own, three leave a thirtieth.
+/// How source cells share in the light of parts of cells: between a plain mean over a cell's width, which
+/// keeps the most detail, and three means, one after the other. What is finer than cells can hold comes back
+/// as detail that is not there; of what lies one and a half cycles a cell away a plain mean leaves a fifth,
+/// three leave a hundredth.
 struct SourceFilter {
   int parts = 1;                   ///< a cell is as wide as so many
   std::vector<double> weights{1};  ///< of the parts about a cell, of sum 1; as many on either side
 
-  /// \param parts  at least 2; 1: cells are taken as they are.
-  explicit SourceFilter(int parts);
+  /// \param parts  at least 1. \param threefold  the share of three means, 0 to 1; with one part it makes no
+  /// difference.
+  explicit SourceFilter(int parts, double threefold = 1);
   SourceFilter() = default;
   /// Parts beyond the edge of a cell.
   int reach() const { return (static_cast<int>(weights.size()) - parts) / 2; }
