@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/measure/sfr/edge_evidence.h>
 #include <petzval/measure/sfr/edge_fit.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
@@ -35,6 +36,15 @@ void refuse_clipped(const EdgeProfile& profile, const std::vector<EdgeSample>& s
                       "transition; expose or scale the picture so that both levels lie inside the range",
                       high ? "bright" : "dark"));
   }
+}
+
+void refuse_smooth_light(const EdgeFit& fit, const std::vector<EdgeSample>& samples, double lattice_step,
+                         double places) {
+  // The unknowns of the line besides: where it runs and how it is bent.
+  const double unknowns = fit.unknowns() + 1 + static_cast<double>(fit.line().bend.size());
+  const double enough = 2 * std::log(places);
+  if (edge_evidence(fit.profile(), samples, static_cast<int>(lattice_step), unknowns, enough) < enough)
+    throw InputError("no edge stands out: light that changes smoothly explains the pixels as well");
 }
 
 /// Distance between the places where the profile first passes 10 % and last passes 90 %.
@@ -269,6 +279,7 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   result.middle_px = middle_of(model, profile.low, profile.high);
   result.rise_px = rise_of(model, profile.low, profile.high);
   refuse_clipped(profile, samples, options, result.rise_px);
+  if (options.places > 0) refuse_smooth_light(fit, samples, lattice_step, options.places);
   const EdgeNoise spread = noise_about(profile, model, fit.unknowns());
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);

@@ -29,6 +29,9 @@ struct SfrOptions {
   /// The light of each code value, rising, where values have been rounded to them; empty: they have not. They
   /// outlive the options.
   std::span<const double> code_levels;
+  /// At how many places an edge has been looked for: unless the samples show it against odds of one to so
+  /// many, and not light that changes smoothly, it is refused; 0: it is known to be here.
+  double places = 0;
   /// Edges that are plainly bent to a smaller radius are refused; 0: none are.
   double least_radius_px = 0;
   /// Where the edge is known to run already; its direction points from dark to bright.

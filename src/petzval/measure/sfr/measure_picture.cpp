@@ -186,7 +186,10 @@ class Measurement {
     SfrOptions options = options_;
     if (edge != nullptr) {
       options.start = edge->line();
-      if (sampled) options.least_radius_px = EdgeSearchOptions().least_radius_px();
+      if (sampled) {
+        options.least_radius_px = EdgeSearchOptions().least_radius_px();
+        options.places = static_cast<double>(channel.plane.values.size());
+      }
       options.missing_target =
           sampled ? MissingTarget::where_sampled(*edge) : MissingTarget::everywhere(*edge);
     }
