@@ -17,8 +17,8 @@ namespace {
 /// How much larger an error may be than spectra along rows and columns say: waves aslant are wrong in both
 /// directions at once, in phase, so that they have up to twice the power of the two.
 constexpr double caution_of_cells = 1.41;
-/// What the blur may take of a tolerance, and cells where the table takes nothing.
-constexpr double of_blur = 0.5, of_cells = 0.75;
+/// What the blur may take of a tolerance, and cells at least and at most, as the table leaves it to them.
+constexpr double of_blur = 0.5, least_of_cells = 0.5, most_of_cells = 0.75;
 
 /// Samples of a scene along a side of a pixel, on the axis.
 double samples_per_pixel(const Scene& scene, const LensDataTable& table, double wavelength_nm,
@@ -65,7 +65,7 @@ double SamplingErrors::with(const SourceFilter& source) const {
 }
 
 LightPath CellChoice::path(int points) const {
-  return {SourceFilter(std::max(parts, points), threefold), window};
+  return {SourceFilter(window ? std::max(parts, points) : 1, threefold), window};
 }
 
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
@@ -112,7 +112,9 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   const double tolerance = options.product.tolerance;
   const double left =
       tolerance * tolerance * (1 - of_blur * of_blur) - std::pow(table.interpolation_error, 2);
-  const double limit = std::min(std::sqrt(std::max(0.0, left)), of_cells * tolerance);
+  // What a table misses beyond the tolerance, no cells make good.
+  const double limit =
+      std::clamp(std::sqrt(std::max(0.0, left)), least_of_cells * tolerance, most_of_cells * tolerance);
   std::optional<CellChoice> cheapest;
   double least_work = INFINITY;
   // One cell holds little more than what the tolerance of a preview asks for.
