@@ -39,6 +39,29 @@ TEST(SceneDetail, OfAChartGoesOnAsEdgesDo) {
   EXPECT_NEAR(detail.variance, 2 * std::pow((white - black) / 2, 2), 0.05 * white * white);
 }
 
+// An edge at 45° crosses each strip once. One w pixels wide shows it as a ramp w long, sinc²(wf) of a jump's
+// power: strips of whole pixels would hide all that is fine.
+TEST(SceneDetail, SeesFineWavesAslant) {
+  ChartOptions options;
+  options.columns = options.rows = 384;
+  options.wavelengths_nm = {550};
+  const Scene scene = slanted_edge_chart(options, 45);
+  const double white = double(scene.drawing()->figures[0].radiance[0]),
+               black = double(scene.drawing()->ground[0]);
+  constexpr int side = 192;
+  constexpr double strip = 0.25;
+  const SceneDetail detail = detail_of(scene, 0, 2, {side, side, 5});
+  for (const double f : {0.5, 1.0, 2.0}) {
+    double law = 0;
+    constexpr int steps = 1000;
+    for (int i = 0; i < steps; ++i) {
+      const double at = f * (1 + (i + 0.5) / steps), phase = M_PI * strip * at;
+      law += std::pow((white - black) / (M_PI * at) * std::sin(phase) / phase, 2) / 2 / side * f / steps;
+    }
+    EXPECT_NEAR(power_between(detail, f, 2 * f) / (2 * law), 1, 0.1) << f;
+  }
+}
+
 // White noise on samples as wide as pixels: all frequencies alike, less what straight lines between samples
 // take, sinc⁴; the rest are its images.
 TEST(SceneDetail, OfSamplesIsThatOfStraightLinesBetweenThem) {
