@@ -251,7 +251,6 @@ SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, co
   double pieces = 0;
   const auto add = [&](std::size_t zone, double f_cpp, double power) {
     const auto band_of = static_cast<std::size_t>(f_cpp / DetailBands::step_cpp);
-    detail.variance += power;
     if (band_of < DetailBands::count) detail.power[zone][band_of] += power;
   };
   for (const bool along_columns : {false, true}) {

@@ -12,9 +12,8 @@ namespace petzval {
 
 /// The detail of a scene on a frame, by its frequency.
 struct SceneDetail {
-  double mean = 0;      ///< of the light
-  double variance = 0;  ///< of strips, along rows and along columns added up
-  /// The variance in each zone of a frame by DetailBands, as a part of the whole.
+  double mean = 0;  ///< of the light
+  /// The variance of strips, along rows and along columns added up, in each zone of a frame by DetailBands.
   std::array<std::vector<double>, FrameZones::count> power;
   /// Half the mean square of the step from one sample to the next: of white noise, its variance.
   double variance_of_neighbours = 0;
