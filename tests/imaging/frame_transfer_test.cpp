@@ -78,8 +78,8 @@ TEST(FrameTransfer, IsWhatBecomesOfAWaveOnCells) {
   const LightPath path{SourceFilter(2), true};
   for (const int cells : {1, 2, 3}) {
     const PixelTaps taps = pixel_taps(site, cells, path);
-    const std::vector<PassedWaves> along = lens.passed(FrameZones::along_radius(2), cells, path),
-                                   aside = lens.passed(FrameZones::across_radius(1), cells, path);
+    const std::vector<PassedWaves> along = lens.passed(FrameZones::along_radius(2), cells),
+                                   aside = lens.passed(FrameZones::across_radius(1), cells);
     for (const std::size_t band : {3, 8, 12, 17, 25, 31, 44}) {
       const double f = DetailBands::middle_cpp(band),
                    of_cells = taps.transform(f, 0) * path.source.transform(f / cells);
@@ -113,7 +113,7 @@ TEST(FrameTransfer, FieldsCountByTheAreaAboutThem) {
   const FrameTransfer a(table(even), 550, followed_frame), b(table(crowded), 550, followed_frame);
   for (std::size_t ring = 0; ring < FrameZones::rings; ++ring) {
     const std::size_t zone = FrameZones::across_radius(ring);
-    EXPECT_NEAR(a.passed(zone, 2, {})[8].by_lens / b.passed(zone, 2, {})[8].by_lens, 1, 0.02) << ring;
+    EXPECT_NEAR(a.passed(zone, 2)[8].by_lens / b.passed(zone, 2)[8].by_lens, 1, 0.02) << ring;
   }
 }
 

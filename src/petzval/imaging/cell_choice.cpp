@@ -40,7 +40,7 @@ SamplingErrors::SamplingErrors(const SceneDetail& detail, const FrameTransfer& l
                                int cells)
     : site_(site), cells_(cells), light_(detail.mean * detail.mean), power_(DetailBands::count) {
   for (std::size_t zone = 0; zone < FrameZones::count; ++zone) {
-    const std::vector<PassedWaves> passed = lens.passed(zone, cells, {SourceFilter(), true});
+    const std::vector<PassedWaves> passed = lens.passed(zone, cells);
     for (std::size_t band = 0; band < DetailBands::count; ++band) {
       const double power = detail.power[zone][band];
       const double wanted = site.transform(DetailBands::middle_cpp(band), 0).real();
@@ -90,7 +90,6 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   };
   constexpr std::array<Filter, 7> filters{
       {{1, 0}, {2, 0.25}, {2, 0.5}, {2, 0.75}, {2, 1}, {3, 0.75}, {3, 1}}};
-  const auto errors_of = [&](int cells) { return SamplingErrors(detail, lens, options.photosite, cells); };
   const auto with = [&](int cells, const Filter& filter, const SamplingErrors& errors) {
     CellChoice choice;
     choice.cells = cells;
@@ -101,7 +100,7 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
     return choice;
   };
   const auto best = [&](int cells) {
-    const SamplingErrors errors = errors_of(cells);
+    const SamplingErrors errors(detail, lens, options.photosite, cells);
     CellChoice best = with(cells, filters[0], errors);
     for (const Filter& filter : filters)
       if (const CellChoice other = with(cells, filter, errors); other.sampling_error < best.sampling_error)
@@ -120,7 +119,7 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   // One cell holds little more than what the tolerance of a preview asks for.
   for (int cells = options.is_preview() ? 1 : 2; cells <= ImagingOptions::most_cells; ++cells) {
     if (cells * cells * filters[0].work() >= least_work) break;
-    const SamplingErrors errors = errors_of(cells);
+    const SamplingErrors errors(detail, lens, options.photosite, cells);
     for (const Filter& filter : filters) {
       const double work = cells * cells * filter.work();
       if (work >= least_work) break;

@@ -39,7 +39,7 @@ struct CellChoice {
 
   /// What light goes through on its way to the cells. \param points  of the scene along a cell: no part of it
   /// may see more than one.
-  LightPath path(int points = 1) const;
+  LightPath path(int points) const;
 };
 
 /// In the scene's middle band, the cells and the source filter that take the least work of those whose error

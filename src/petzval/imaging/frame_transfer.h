@@ -3,7 +3,6 @@
 #pragma once
 
 #include <petzval/imaging/frame_zones.h>
-#include <petzval/imaging/pixel_gather.h>
 #include <petzval/optics/lens_data_table.h>
 
 #include <array>
@@ -33,8 +32,8 @@ class FrameTransfer {
  public:
   FrameTransfer(const LensDataTable& table, double wavelength_nm, const SensorGeometry& sensor);
 
-  /// By DetailBands. \param cells  a pixel. \param path  of which the window counts.
-  std::vector<PassedWaves> passed(std::size_t zone, int cells, const LightPath& path) const;
+  /// By DetailBands. \param cells  a pixel; their kernels see PSFs through the window.
+  std::vector<PassedWaves> passed(std::size_t zone, int cells) const;
 
  private:
   using Otf = std::vector<std::complex<float>>;  ///< at the middles of DetailBands

@@ -19,12 +19,14 @@ namespace {
 constexpr double piece_pixels = 32;
 constexpr std::size_t drawn_steps = 64;                ///< a pixel
 constexpr double drawn_pixels = 0.25;                  ///< the width of strips of figures
-constexpr std::size_t most_steps_of_strips = 1 << 20;  ///< looked at in each direction
+constexpr std::size_t most_steps_of_strips = 1 << 20;  ///< looked at in each direction,
+constexpr std::size_t least_strips = 32;               ///< if so many strips have no more
 
 /// Strips of a scene that lie along its rows or its columns.
 class Strips {
  public:
-  Strips(const Scene& scene, int band, double samples_per_pixel, bool along_columns)
+  Strips(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor,
+         bool along_columns)
       : light_(scene.band(band)),
         band_(static_cast<std::size_t>(band)),
         columns_(static_cast<std::size_t>(scene.columns())),
@@ -34,13 +36,18 @@ class Strips {
         long_samples_(along_columns ? scene.rows() : scene.columns()),
         wide_samples_(along_columns ? scene.columns() : scene.rows()) {
     if (drawing_ == nullptr) {
-      lines_ = std::max<std::size_t>(1, static_cast<std::size_t>(samples_ + 0.5));
-      count_ = static_cast<std::size_t>(wide_samples_) / std::min(lines_, std::size_t(wide_samples_));
-      lines_ = std::min(lines_, static_cast<std::size_t>(wide_samples_));
+      lines_ = static_cast<std::size_t>(std::clamp(samples_ + 0.5, 1.0, double(wide_samples_)));
+      count_ = static_cast<std::size_t>(wide_samples_) / lines_;
       length_ = static_cast<std::size_t>(long_samples_);
     } else {
-      count_ = std::max<std::size_t>(1, static_cast<std::size_t>(wide_samples_ / samples_ / drawn_pixels));
-      length_ = static_cast<std::size_t>(double(long_samples_) / samples_ * drawn_steps);
+      // Of a chart that reaches beyond the frame, the middle.
+      const double scene_long = long_samples_ / samples_, scene_wide = wide_samples_ / samples_;
+      const double seen_long = std::min(scene_long, double(along_columns ? sensor.rows : sensor.columns)),
+                   seen_wide = std::min(scene_wide, double(along_columns ? sensor.columns : sensor.rows));
+      first_long_ = (scene_long - seen_long) / 2;
+      first_wide_ = (scene_wide - seen_wide) / 2;
+      count_ = std::max<std::size_t>(1, static_cast<std::size_t>(seen_wide / drawn_pixels));
+      length_ = std::max<std::size_t>(1, static_cast<std::size_t>(seen_long * drawn_steps));
       lay_figures();
     }
   }
@@ -51,7 +58,7 @@ class Strips {
   /// From the middle of the scene to that of a strip [pixels].
   double aside(std::size_t strip) const {
     const double wide = drawing_ == nullptr ? double(lines_) / samples_ : drawn_pixels;
-    return (double(strip) + 0.5) * wide - double(wide_samples_) / samples_ / 2;
+    return (double(strip) + 0.5) * wide + first_wide_ - double(wide_samples_) / samples_ / 2;
   }
 
   void write(std::size_t strip, std::vector<float>& values) const {
@@ -81,10 +88,11 @@ class Strips {
     const float plain = drawing_->ground[band_];
     if (!drawing_->texture) return plain;
     // Along a line of samples.
-    const auto line = std::min(static_cast<std::size_t>((double(strip) + 0.5) * drawn_pixels * samples_),
-                               static_cast<std::size_t>(wide_samples_) - 1);
-    const double at = std::clamp((double(step) + 0.5) / double(drawn_steps) * samples_ - 0.5, 0.0,
-                                 double(long_samples_) - 1);
+    const auto line =
+        std::min(static_cast<std::size_t>(((double(strip) + 0.5) * drawn_pixels + first_wide_) * samples_),
+                 static_cast<std::size_t>(wide_samples_) - 1);
+    const double at = std::clamp(((double(step) + 0.5) / double(drawn_steps) + first_long_) * samples_ - 0.5,
+                                 0.0, double(long_samples_) - 1);
     const auto before = static_cast<std::size_t>(at);
     const std::size_t after = std::min(before + 1, static_cast<std::size_t>(long_samples_) - 1);
     const std::vector<float>& texture = *drawing_->texture;
@@ -97,7 +105,8 @@ class Strips {
     std::vector<ShapesInPicture::Valued> valued;
     const auto place = [&](Point sample) {
       if (along_columns_) std::swap(sample.x, sample.y);
-      return Point{sample.x / samples_ * double(drawn_steps), sample.y / samples_ / drawn_pixels};
+      return Point{(sample.x / samples_ - first_long_) * double(drawn_steps),
+                   (sample.y / samples_ - first_wide_) / drawn_pixels};
     };
     for (std::size_t i = 0; i < laid.size(); ++i) {
       const SceneDrawing::Figure& figure = drawing_->figures[i];
@@ -117,6 +126,7 @@ class Strips {
   const SceneDrawing* drawing_;
   double samples_;  ///< a pixel
   int long_samples_, wide_samples_;
+  double first_long_ = 0, first_wide_ = 0;  ///< where strips of figures begin [pixels]
   std::size_t count_ = 0, length_ = 0, lines_ = 1;
   std::optional<ShapesInPicture> figures_;
 };
@@ -145,8 +155,9 @@ class PieceSpectra {
   };
 
   Sums all() const {
-    const std::size_t every =
-        std::max<std::size_t>(1, strips_.count() * strips_.length() / most_steps_of_strips);
+    const std::size_t every = std::max<std::size_t>(
+        1,
+        std::min(strips_.count() * strips_.length() / most_steps_of_strips, strips_.count() / least_strips));
     // Blocks do not depend on the number of threads, nor does the order in which they are added up.
     constexpr std::size_t blocks = 32;
     std::vector<Sums> parts(blocks);
@@ -248,13 +259,15 @@ double variance_of_neighbours(const Scene& scene, int band) {
 SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor) {
   SceneDetail detail;
   detail.power.fill(std::vector<double>(DetailBands::count));
+  detail.variance_of_neighbours = variance_of_neighbours(scene, band);
+  if (!(samples_per_pixel > 0 && std::isfinite(samples_per_pixel))) return detail;
   double pieces = 0;
   const auto add = [&](std::size_t zone, double f_cpp, double power) {
-    const auto band_of = static_cast<std::size_t>(f_cpp / DetailBands::step_cpp);
-    if (band_of < DetailBands::count) detail.power[zone][band_of] += power;
+    const double at = f_cpp / DetailBands::step_cpp;
+    if (at < double(DetailBands::count)) detail.power[zone][static_cast<std::size_t>(at)] += power;
   };
   for (const bool along_columns : {false, true}) {
-    const Strips strips(scene, band, samples_per_pixel, along_columns);
+    const Strips strips(scene, band, samples_per_pixel, sensor, along_columns);
     const PieceSpectra spectra(strips, sensor, along_columns, scene.is_panorama());
     const PieceSpectra::Sums sums = spectra.all();
     if (sums.pieces == 0) continue;
@@ -275,7 +288,6 @@ SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, co
       }
   }
   if (pieces != 0) detail.mean /= pieces;
-  detail.variance_of_neighbours = variance_of_neighbours(scene, band);
   return detail;
 }
 
