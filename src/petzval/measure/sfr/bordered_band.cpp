@@ -32,71 +32,9 @@ std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vec
   return result;
 }
 
-BorderedCholesky::BorderedCholesky(BorderedBand matrix) : factor_(std::move(matrix)), good_(true) {
-  per_diagonal_.reserve(static_cast<std::size_t>(factor_.size()));
-  // The loops over the borders that edge-spread functions have are unrolled.
-  switch (factor_.border()) {
-    case 4:
-      eliminate_band<4>();
-      break;
-    case 6:
-      eliminate_band<6>();
-      break;
-    case 8:
-      eliminate_band<8>();
-      break;
-    case 9:
-      eliminate_band<9>();
-      break;
-    default:
-      eliminate_band<Eigen::Dynamic>();
-  }
-  eliminate_border();
-}
-
-double BorderedCholesky::take_root(double& diagonal) {
-  good_ = diagonal > 0 && std::isfinite(diagonal);
-  if (!good_) return 0;
-  diagonal = std::sqrt(diagonal);
-  return per_diagonal_.emplace_back(1 / diagonal);
-}
-
-template <int border_size>
-void BorderedCholesky::eliminate_band() {
-  const int band = factor_.band(), border = border_size == Eigen::Dynamic ? factor_.border() : border_size;
-  double beside[BorderedBand::most_border];
-  for (int j = 0; j < band; ++j) {
-    double* const l = factor_.column(j);
-    const int reach = below(factor_, j);
-    const double scale = take_root(l[0]);
-    if (!good_) return;
-    for (int p = 1; p <= reach; ++p) l[p] *= scale;
-    for (int r = 0; r < border; ++r) beside[r] = l[corner + r] *= scale;
-    for (int p = 1; p <= reach; ++p) {
-      double* const other = factor_.column(j + p);
-      const double share = l[p];
-      for (int q = p; q <= reach; ++q) other[q - p] -= share * l[q];
-      for (int r = 0; r < border; ++r) other[corner + r] -= share * beside[r];
-    }
-    // Of the border's corner the upper half is written, too, and not used.
-    for (int s = 0; s < border; ++s) {
-      double* const other = factor_.column(band + s) + corner;
-      for (int r = 0; r < border; ++r) other[r] -= beside[s] * beside[r];
-    }
-  }
-}
-
-void BorderedCholesky::eliminate_border() {
-  const int band = factor_.band(), border = factor_.border();
-  for (int k = 0; k < border && good_; ++k) {
-    double* const l = factor_.column(band + k) + corner;
-    const double scale = take_root(l[k]);
-    for (int r = k + 1; r < border; ++r) l[r] *= scale;
-    for (int s = k + 1; s < border; ++s) {
-      double* const other = factor_.column(band + s) + corner;
-      for (int r = s; r < border; ++r) other[r] -= l[s] * l[r];
-    }
-  }
+BorderedCholesky::BorderedCholesky(BorderedBand matrix)
+    : factor_(std::move(matrix)), per_diagonal_(static_cast<std::size_t>(factor_.size())) {
+  good_ = factor_in_place(factor_.column(0), factor_.band(), factor_.border(), per_diagonal_.data());
 }
 
 double BorderedCholesky::log_determinant() const {
@@ -143,32 +81,9 @@ Eigen::VectorXd BorderedCholesky::solve(const Eigen::VectorXd& right) const {
 }
 
 BorderedBand BorderedCholesky::inverse() const {
-  // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
-  const int band = factor_.band(), border = factor_.border();
-  BorderedBand z(band, border);
-  for (int j = factor_.size() - 1; j >= 0; --j) {
-    int rows[BorderedBand::width + BorderedBand::most_border];
-    double l[BorderedBand::width + BorderedBand::most_border];
-    int count = 0;
-    for (int p = 1; j < band && p <= below(factor_, j); ++p) rows[count++] = j + p;
-    for (int r = std::max(0, j - band + 1); r < border; ++r) rows[count++] = band + r;
-    for (int k = 0; k < count; ++k) l[k] = factor_.at(rows[k], j);
-    const double scale = 1 / factor_.at(j, j);
-    double sums[BorderedBand::width + BorderedBand::most_border] = {};
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < i; ++k) {
-        const double beside = z.at(rows[i], rows[k]);
-        sums[i] += l[k] * beside;
-        sums[k] += l[i] * beside;
-      }
-      sums[i] += l[i] * z.at(rows[i], rows[i]);
-    }
-    for (int i = 0; i < count; ++i) z.at(rows[i], j) = -sums[i] * scale;
-    double sum = 0;
-    for (int k = 0; k < count; ++k) sum += l[k] * z.at(rows[k], j);
-    z.at(j, j) = (scale - sum) * scale;
-  }
-  return z;
+  BorderedBand inverse(factor_.band(), factor_.border());
+  invert({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), inverse.column(0));
+  return inverse;
 }
 
 double trace_of_product(const BorderedBand& a, const BorderedBand& b) {

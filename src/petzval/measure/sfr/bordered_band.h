@@ -71,13 +71,6 @@ class BorderedCholesky {
   BorderedBand inverse() const;
 
  private:
-  /// The columns of the band, with as many unknowns in the border; `Eigen::Dynamic`: with any number.
-  template <int border_size>
-  void eliminate_band();
-  void eliminate_border();
-  /// Divides by the root of a diagonal entry. \returns its reciprocal; 0, and no factor, unless it is
-  /// positive.
-  double take_root(double& diagonal);
   template <int count>
   void solve_lanes(double* x) const;
 

@@ -3,6 +3,7 @@
 #include <petzval/measure/sfr/bordered_lanes.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
@@ -18,44 +19,177 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int eight = BorderedBand::lanes, corner = BorderedBand::width + 1;
 using Lanes = hn::CappedTag<double, eight>;
+using Vector = hn::Vec<Lanes>;
 
 /// How many entries a column of the band has below the diagonal within it.
 HWY_INLINE int below(const BorderedEntries& matrix, int column) {
   return std::min(BorderedBand::width, matrix.band - 1 - column);
 }
 
-/// row −= factor · value
-HWY_ATTR HWY_INLINE void take_multiple(double factor, hn::Vec<Lanes> value, double* row) {
-  const Lanes d;
-  hn::StoreU(hn::NegMulAdd(hn::Set(d, factor), value, hn::LoadU(d, row)), d, row);
+/// Takes the root of a diagonal entry. \returns its reciprocal; 0, and no root, unless it is positive.
+HWY_ATTR HWY_INLINE double take_root(double& diagonal) {
+  if (!(diagonal > 0 && std::isfinite(diagonal))) return 0;
+  diagonal = std::sqrt(diagonal);
+  return 1 / diagonal;
 }
 
-HWY_ATTR void solve(const BorderedEntries& factor, const double* per_diagonal, double* x) {
-  const Lanes d;
-  const int band = factor.band, border = factor.border, size = band + border;
+/// One column of the band, with `reach` entries below its diagonal.
+template <int reach, int border>
+HWY_ATTR HWY_INLINE double eliminate_column(double* l, double* border_columns) {
+  constexpr int stride = corner + border;
+  const double scale = take_root(l[0]);
+  if (scale == 0) return 0;
+  double under[reach + 1], beside[border];
+  for (int p = 1; p <= reach; ++p) under[p] = l[p] *= scale;
+  for (int r = 0; r < border; ++r) beside[r] = l[corner + r] *= scale;
+  for (int p = 1; p <= reach; ++p) {
+    double* const other = l + p * stride;
+    for (int q = p; q <= reach; ++q) other[q - p] -= under[p] * under[q];
+    for (int r = 0; r < border; ++r) other[corner + r] -= under[p] * beside[r];
+  }
+  for (int s = 0; s < border; ++s, border_columns += stride)
+    for (int r = 0; r < border; ++r) border_columns[corner + r] -= beside[s] * beside[r];
+  return scale;
+}
+
+/// The last columns of the band have fewer entries below their diagonals.
+template <int reach, int border>
+HWY_ATTR HWY_INLINE double eliminate_within(int rest, double* l, double* border_columns) {
+  if constexpr (reach > 0)
+    if (rest < reach) return eliminate_within<reach - 1, border>(rest, l, border_columns);
+  return eliminate_column<reach, border>(l, border_columns);
+}
+
+template <int border>
+HWY_ATTR bool eliminate(double* entries, int band, double* per_diagonal) {
+  constexpr int stride = corner + border;
+  double* const border_columns = entries + std::ptrdiff_t{stride} * band;
+  double* l = entries;
+  for (int j = 0; j < band; ++j, l += stride) {
+    per_diagonal[j] = eliminate_within<BorderedBand::width, border>(band - 1 - j, l, border_columns);
+    if (per_diagonal[j] == 0) return false;
+  }
+  for (int k = 0; k < border; ++k, l += stride) {
+    double* const own = l + corner;
+    const double scale = per_diagonal[band + k] = take_root(own[k]);
+    if (scale == 0) return false;
+    for (int r = k + 1; r < border; ++r) own[r] *= scale;
+    for (int s = k + 1; s < border; ++s) {
+      double* const other = border_columns + s * stride + corner;
+      for (int r = s; r < border; ++r) other[r] -= own[s] * own[r];
+    }
+  }
+  return true;
+}
+
+/// For each number of unknowns in the border, so that the loops over it are unrolled.
+template <int border>
+HWY_ATTR bool eliminate_with_border(int wanted, double* entries, int band, double* per_diagonal) {
+  if constexpr (border < BorderedBand::most_border)
+    if (wanted > border) return eliminate_with_border<border + 1>(wanted, entries, band, per_diagonal);
+  return eliminate<border>(entries, band, per_diagonal);
+}
+
+HWY_ATTR bool eliminate_all(double* entries, int band, int border, double* per_diagonal) {
+  return eliminate_with_border<1>(border, entries, band, per_diagonal);
+}
+
+/// The part of an inverse that its next columns need: of the `width` unknowns behind them, each in the place
+/// that its number has modulo `width`, and of the border behind those.
+struct InverseWindow {
+  static constexpr int places = BorderedBand::width + BorderedBand::most_border;
+  double rows[places][places] = {};
+};
+
+/// From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
+HWY_ATTR void invert_all(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  constexpr int width = BorderedBand::width, places = InverseWindow::places;
+  const int band = factor.band, border = factor.border;
   const std::ptrdiff_t stride = corner + border;
+  InverseWindow window;
+  for (int j = band + border - 1; j >= 0; --j) {
+    const double* const of_factor = factor.entries + stride * j;
+    double* const of_inverse = inverse + stride * j;
+    const int reach = j < band ? below(factor, j) : 0, first = std::max(0, j - band + 1);
+    double l[places] = {}, sums[places] = {};
+    for (int p = 1; p <= reach; ++p) l[(j + p) % width] = of_factor[p];
+    for (int r = first; r < border; ++r) l[width + r] = of_factor[corner + r];
+    for (int i = 0; i < places; ++i)
+      for (int k = 0; k < places; ++k) sums[k] += l[i] * window.rows[i][k];
+    const double scale = per_diagonal[j];
+    double sum = 0;
+    for (int k = 0; k < places; ++k) sums[k] *= -scale, sum += l[k] * sums[k];
+    const double diagonal = (scale - sum) * scale;
+    of_inverse[j < band ? 0 : corner + j - band] = diagonal;
+    for (int p = 1; p <= reach; ++p) of_inverse[p] = sums[(j + p) % width];
+    for (int r = first; r < border; ++r) of_inverse[corner + r] = sums[width + r];
+    // In the place of the unknown that is `width` behind this one, and not needed any more.
+    const int place = j < band ? j % width : width + j - band;
+    sums[place] = diagonal;
+    for (int k = 0; k < places; ++k) window.rows[place][k] = window.rows[k][place] = sums[k];
+  }
+}
+
+/// value −= factor · other
+HWY_ATTR HWY_INLINE void take(Vector& value, double factor, Vector other) {
+  value = hn::NegMulAdd(hn::Set(Lanes(), factor), other, value);
+}
+
+/// The unknowns of the band are taken to the right side's rows that they touch when these are reached, the
+/// nearest last, for it is the one that has to be waited for.
+template <int border>
+HWY_ATTR void solve(const BorderedEntries& factor, const double* per_diagonal, double* x) {
+  static_assert(BorderedBand::width == 5);
+  const Lanes d;
+  const int band = factor.band;
+  constexpr std::ptrdiff_t stride = corner + border;
   double* const border_rows = x + std::ptrdiff_t{eight} * band;
-  for (int j = 0; j < size; ++j) {
-    const double* const l = factor.entries + j * stride;
-    double* const row = x + std::ptrdiff_t{eight} * j;
-    const auto value = hn::Mul(hn::LoadU(d, row), hn::Set(d, per_diagonal[j]));
-    hn::StoreU(value, d, row);
-    if (j < band)
-      for (int p = 1; p <= below(factor, j); ++p) take_multiple(l[p], value, row + eight * p);
-    for (int r = std::max(0, j - band + 1); r < border; ++r)
-      take_multiple(l[corner + r], value, border_rows + eight * r);
-  }
-  for (int j = size - 1; j >= 0; --j) {
-    const double* const l = factor.entries + j * stride;
-    double* const row = x + std::ptrdiff_t{eight} * j;
+  const double* const border_columns = factor.entries + stride * band;
+  Vector beside[border];
+  for (int r = 0; r < border; ++r) beside[r] = hn::LoadU(d, border_rows + eight * r);
+  auto x1 = hn::Zero(d), x2 = x1, x3 = x1, x4 = x1, x5 = x1;  // so many places before
+  const double* l = factor.entries;
+  double* row = x;
+  for (int j = 0; j < band; ++j, l += stride, row += eight) {
     auto value = hn::LoadU(d, row);
-    for (int r = std::max(0, j - band + 1); r < border; ++r)
-      value = hn::NegMulAdd(hn::Set(d, l[corner + r]), hn::LoadU(d, border_rows + eight * r), value);
-    if (j < band)
-      for (int p = below(factor, j); p > 0; --p)
-        value = hn::NegMulAdd(hn::Set(d, l[p]), hn::LoadU(d, row + eight * p), value);
-    hn::StoreU(hn::Mul(value, hn::Set(d, per_diagonal[j])), d, row);
+    if (j > 4) take(value, l[5 - 5 * stride], x5);
+    if (j > 3) take(value, l[4 - 4 * stride], x4);
+    if (j > 2) take(value, l[3 - 3 * stride], x3);
+    if (j > 1) take(value, l[2 - 2 * stride], x2);
+    if (j > 0) take(value, l[1 - stride], x1);
+    value = hn::Mul(value, hn::Set(d, per_diagonal[j]));
+    hn::StoreU(value, d, row);
+    for (int r = 0; r < border; ++r) take(beside[r], l[corner + r], value);
+    x5 = x4, x4 = x3, x3 = x2, x2 = x1, x1 = value;
   }
+  for (int k = 0; k < border; ++k) {
+    beside[k] = hn::Mul(beside[k], hn::Set(d, per_diagonal[band + k]));
+    for (int r = k + 1; r < border; ++r) take(beside[r], border_columns[k * stride + corner + r], beside[k]);
+  }
+  for (int k = border - 1; k >= 0; --k) {
+    for (int r = k + 1; r < border; ++r) take(beside[k], border_columns[k * stride + corner + r], beside[r]);
+    beside[k] = hn::Mul(beside[k], hn::Set(d, per_diagonal[band + k]));
+    hn::StoreU(beside[k], d, border_rows + eight * k);
+  }
+  // Behind the last column there is nothing, whose entries are zero.
+  x1 = x2 = x3 = x4 = x5 = hn::Zero(d);
+  for (int j = band - 1; j >= 0; --j) {
+    l -= stride, row -= eight;
+    auto value = hn::LoadU(d, row);
+    for (int r = 0; r < border; ++r) take(value, l[corner + r], beside[r]);
+    take(value, l[5], x5), take(value, l[4], x4), take(value, l[3], x3), take(value, l[2], x2);
+    take(value, l[1], x1);
+    value = hn::Mul(value, hn::Set(d, per_diagonal[j]));
+    hn::StoreU(value, d, row);
+    x5 = x4, x4 = x3, x3 = x2, x2 = x1, x1 = value;
+  }
+}
+
+template <int border>
+HWY_ATTR void solve_with_border(const BorderedEntries& factor, const double* per_diagonal, double* x) {
+  if constexpr (border < BorderedBand::most_border)
+    if (factor.border > border) return solve_with_border<border + 1>(factor, per_diagonal, x);
+  solve<border>(factor, per_diagonal, x);
 }
 
 HWY_ATTR void quadratic(const BorderedEntries& matrix, const double* x, double* results) {
@@ -82,7 +216,8 @@ HWY_ATTR void quadratic(const BorderedEntries& matrix, const double* x, double* 
 
 /// With fewer lanes than eight, one part of the vectors after the other.
 HWY_ATTR void solve_all(const BorderedEntries& factor, const double* per_diagonal, double* x) {
-  for (int v = 0; v < eight; v += static_cast<int>(hn::Lanes(Lanes()))) solve(factor, per_diagonal, x + v);
+  for (int v = 0; v < eight; v += static_cast<int>(hn::Lanes(Lanes())))
+    solve_with_border<1>(factor, per_diagonal, x + v);
 }
 
 HWY_ATTR void quadratic_of_all(const BorderedEntries& matrix, const double* x, double* results) {
@@ -96,8 +231,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace petzval {
 
+HWY_EXPORT(eliminate_all);
+HWY_EXPORT(invert_all);
 HWY_EXPORT(solve_all);
 HWY_EXPORT(quadratic_of_all);
+
+bool factor_in_place(double* entries, int band, int border, double* per_diagonal) {
+  return HWY_DYNAMIC_DISPATCH(eliminate_all)(entries, band, border, per_diagonal);
+}
+
+void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  HWY_DYNAMIC_DISPATCH(invert_all)(factor, per_diagonal, inverse);
+}
 
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x) {
   HWY_DYNAMIC_DISPATCH(solve_all)(factor, per_diagonal, x);

@@ -10,6 +10,14 @@ struct BorderedEntries {
   int band, border;
 };
 
+/// Takes a matrix to its Cholesky factor in place. Of the border's corner the upper half is written, too, and
+/// not used. \param per_diagonal  becomes the reciprocals of the factor's diagonal. \returns whether the
+/// matrix is positive definite.
+bool factor_in_place(double* entries, int band, int border, double* per_diagonal);
+
+/// The inverse of a factored matrix, where that has entries. \param inverse  as many as the factor has.
+void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse);
+
 /// Solves L Lᵀ x = right in place. \param per_diagonal  reciprocals of the factor's diagonal. \param x  rows
 /// of eight.
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x);

@@ -12,6 +12,7 @@
 #include <cctype>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 namespace petzval {
@@ -106,6 +107,44 @@ PixelBox box_within(const FoundEdge& edge, const Plane& plane) {
           std::min(plane.rows, static_cast<int>(middle_y + half_height)) - top};
 }
 
+/// Edges that could not be measured for the same reason.
+struct LeftOut {
+  std::string reason;  ///< in the first edge's words
+  bool all_alike = true;
+  std::vector<const FoundEdge*> edges;
+};
+
+/// Reasons that differ in their numbers only are one.
+std::string without_numbers(const std::string& reason) {
+  std::string rest;
+  std::ranges::copy_if(reason, std::back_inserter(rest),
+                       [](unsigned char c) { return !std::isdigit(c) && c != '.' && c != '-' && c != '+'; });
+  return rest;
+}
+
+void add_left_out(std::vector<LeftOut>& all, const std::string& reason, const FoundEdge& edge) {
+  const auto same = std::ranges::find_if(all, [kind = without_numbers(reason)](const LeftOut& some) {
+    return without_numbers(some.reason) == kind;
+  });
+  LeftOut& some = same == all.end() ? all.emplace_back() : *same;
+  if (some.edges.empty()) some.reason = reason;
+  some.all_alike = some.all_alike && some.reason == reason;
+  some.edges.push_back(&edge);
+}
+
+/// A photograph may have hundreds: the first few places say where to look.
+std::string note_of(const LeftOut& some) {
+  constexpr std::size_t most_places = 3;
+  std::string places;
+  for (std::size_t i = 0; i < std::min(most_places, some.edges.size()); ++i)
+    places += fmt::format("{}{:.0f},{:.0f} to {:.0f},{:.0f}", i == 0 ? "" : "; ", some.edges[i]->from.x,
+                          some.edges[i]->from.y, some.edges[i]->to.x, some.edges[i]->to.y);
+  if (some.edges.size() == 1) return fmt::format("the edge from {} is left out: {}", places, some.reason);
+  if (some.edges.size() > most_places) places += fmt::format("; {} more", some.edges.size() - most_places);
+  return fmt::format("{} edges are left out (from {}): {}{}", some.edges.size(), places,
+                     some.all_alike ? "" : "of the first, ", some.reason);
+}
+
 class Measurement {
  public:
   Measurement(const SfrRequest& request, const PicturePlanes& picture, const std::vector<Channel>& channels,
@@ -150,11 +189,10 @@ class Measurement {
     for (auto& result : results) std::move(result.begin(), result.end(), std::back_inserter(edges));
     if (edges.empty()) throw InputError(name_, faults.empty() ? "no edge" : faults.front());
     if (request_.chart_mm) place_on_chart(edges);
+    std::vector<LeftOut> left_out;
     for (std::size_t i = 0; i < jobs.size(); ++i)
-      if (!faults[i].empty())
-        send_note(context, fmt::format("{}: the edge from {:.0f},{:.0f} to {:.0f},{:.0f} is left out: {}",
-                                       name_, jobs[i].edge->from.x, jobs[i].edge->from.y, jobs[i].edge->to.x,
-                                       jobs[i].edge->to.y, faults[i]));
+      if (!faults[i].empty()) add_left_out(left_out, faults[i], *jobs[i].edge);
+    for (const LeftOut& some : left_out) send_note(context, fmt::format("{}: {}", name_, note_of(some)));
     return edges;
   }
 
