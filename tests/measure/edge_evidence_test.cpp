@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace petzval {
 namespace {
@@ -113,6 +115,26 @@ TEST(EdgeEvidence, EdgesStandOutFromNoise) {
                   noise, 7)),
               36u)
         << noise;
+}
+
+TEST(EdgeEvidence, ANoteForEachReasonCountsWhatIsLeftOut) {
+  // An edge beside a grating whose outlines are slopes of light.
+  std::vector<std::string> notes;
+  Context context;
+  context.note = [&](const std::string& text) { notes.push_back(text); };
+  measure_sfr(picture_of(
+                  [](double x, double y) {
+                    if (x < 200) return 0.5 + 0.3 * std::sin(2 * pi * x / 40);
+                    return 0.5 + 0.3 * std::erf((x - 250 + 0.1 * (y - 150)) / std::sqrt(2.0));
+                  },
+                  0, 1),
+              {}, "photo.png", context);
+  std::erase_if(notes,
+                [](const std::string& text) { return !text.ends_with("explains the pixels as well"); });
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(notes[0].starts_with("photo.png: ")) << notes[0];
+  EXPECT_NE(notes[0].find(" edges are left out (from "), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find(" more): no edge stands out: light that changes"), std::string::npos) << notes[0];
 }
 
 }  // namespace

@@ -81,9 +81,32 @@ Eigen::VectorXd BorderedCholesky::solve(const Eigen::VectorXd& right) const {
 }
 
 BorderedBand BorderedCholesky::inverse() const {
-  BorderedBand inverse(factor_.band(), factor_.border());
-  invert({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), inverse.column(0));
-  return inverse;
+  // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
+  const int band = factor_.band(), border = factor_.border();
+  BorderedBand z(band, border);
+  for (int j = factor_.size() - 1; j >= 0; --j) {
+    int rows[BorderedBand::width + BorderedBand::most_border];
+    double l[BorderedBand::width + BorderedBand::most_border];
+    int count = 0;
+    for (int p = 1; j < band && p <= below(factor_, j); ++p) rows[count++] = j + p;
+    for (int r = std::max(0, j - band + 1); r < border; ++r) rows[count++] = band + r;
+    for (int k = 0; k < count; ++k) l[k] = factor_.at(rows[k], j);
+    const double scale = 1 / factor_.at(j, j);
+    double sums[BorderedBand::width + BorderedBand::most_border] = {};
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < i; ++k) {
+        const double beside = z.at(rows[i], rows[k]);
+        sums[i] += l[k] * beside;
+        sums[k] += l[i] * beside;
+      }
+      sums[i] += l[i] * z.at(rows[i], rows[i]);
+    }
+    for (int i = 0; i < count; ++i) z.at(rows[i], j) = -sums[i] * scale;
+    double sum = 0;
+    for (int k = 0; k < count; ++k) sum += l[k] * z.at(rows[k], j);
+    z.at(j, j) = (scale - sum) * scale;
+  }
+  return z;
 }
 
 double trace_of_product(const BorderedBand& a, const BorderedBand& b) {

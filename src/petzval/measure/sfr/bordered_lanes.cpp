@@ -94,42 +94,6 @@ HWY_ATTR bool eliminate_all(double* entries, int band, int border, double* per_d
   return eliminate_with_border<1>(border, entries, band, per_diagonal);
 }
 
-/// The part of an inverse that its next columns need: of the `width` unknowns behind them, each in the place
-/// that its number has modulo `width`, and of the border behind those.
-struct InverseWindow {
-  static constexpr int places = BorderedBand::width + BorderedBand::most_border;
-  double rows[places][places] = {};
-};
-
-/// From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
-HWY_ATTR void invert_all(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
-  constexpr int width = BorderedBand::width, places = InverseWindow::places;
-  const int band = factor.band, border = factor.border;
-  const std::ptrdiff_t stride = corner + border;
-  InverseWindow window;
-  for (int j = band + border - 1; j >= 0; --j) {
-    const double* const of_factor = factor.entries + stride * j;
-    double* const of_inverse = inverse + stride * j;
-    const int reach = j < band ? below(factor, j) : 0, first = std::max(0, j - band + 1);
-    double l[places] = {}, sums[places] = {};
-    for (int p = 1; p <= reach; ++p) l[(j + p) % width] = of_factor[p];
-    for (int r = first; r < border; ++r) l[width + r] = of_factor[corner + r];
-    for (int i = 0; i < places; ++i)
-      for (int k = 0; k < places; ++k) sums[k] += l[i] * window.rows[i][k];
-    const double scale = per_diagonal[j];
-    double sum = 0;
-    for (int k = 0; k < places; ++k) sums[k] *= -scale, sum += l[k] * sums[k];
-    const double diagonal = (scale - sum) * scale;
-    of_inverse[j < band ? 0 : corner + j - band] = diagonal;
-    for (int p = 1; p <= reach; ++p) of_inverse[p] = sums[(j + p) % width];
-    for (int r = first; r < border; ++r) of_inverse[corner + r] = sums[width + r];
-    // In the place of the unknown that is `width` behind this one, and not needed any more.
-    const int place = j < band ? j % width : width + j - band;
-    sums[place] = diagonal;
-    for (int k = 0; k < places; ++k) window.rows[place][k] = window.rows[k][place] = sums[k];
-  }
-}
-
 /// value −= factor · other
 HWY_ATTR HWY_INLINE void take(Vector& value, double factor, Vector other) {
   value = hn::NegMulAdd(hn::Set(Lanes(), factor), other, value);
@@ -232,16 +196,11 @@ HWY_AFTER_NAMESPACE();
 namespace petzval {
 
 HWY_EXPORT(eliminate_all);
-HWY_EXPORT(invert_all);
 HWY_EXPORT(solve_all);
 HWY_EXPORT(quadratic_of_all);
 
 bool factor_in_place(double* entries, int band, int border, double* per_diagonal) {
   return HWY_DYNAMIC_DISPATCH(eliminate_all)(entries, band, border, per_diagonal);
-}
-
-void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
-  HWY_DYNAMIC_DISPATCH(invert_all)(factor, per_diagonal, inverse);
 }
 
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x) {

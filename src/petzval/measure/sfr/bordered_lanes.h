@@ -15,9 +15,6 @@ struct BorderedEntries {
 /// matrix is positive definite.
 bool factor_in_place(double* entries, int band, int border, double* per_diagonal);
 
-/// The inverse of a factored matrix, where that has entries. \param inverse  as many as the factor has.
-void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse);
-
 /// Solves L Lᵀ x = right in place. \param per_diagonal  reciprocals of the factor's diagonal. \param x  rows
 /// of eight.
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x);

@@ -24,19 +24,22 @@ HWY_ATTR HWY_INLINE Vector within(Vector value) {
   return hn::Max(hn::Set(d, -1.0), hn::Min(hn::Set(d, 1.0), value));
 }
 
-/// By Clenshaw's recurrence along y, and by that of the polynomials along x.
+/// Two sums at a time, so that none has to wait for another.
 HWY_ATTR HWY_INLINE Vector sum_at(const ChebyshevTerms& terms, Vector x, Vector y) {
   const Lanes d;
-  const auto twice_x = hn::Add(x, x), twice_y = hn::Add(y, y);
-  auto before = x, polynomial = hn::Set(d, 1.0), sum = hn::Zero(d);  // T₋₁ = T₁
+  const auto twice_x = hn::Add(x, x), twice_y = hn::Add(y, y), one = hn::Set(d, 1.0);
+  Vector across[ChebyshevTerms::most_across + 1];
+  across[0] = one, across[1] = y;
+  for (int j = 2; j < terms.across; ++j) across[j] = hn::MulSub(twice_y, across[j - 1], across[j - 2]);
+  auto before = x, polynomial = one, sum = hn::Zero(d);  // T₋₁ = T₁
   for (int i = 0; i < terms.along; ++i) {
     const double* const c = terms.coefficients + i * terms.stride;
-    auto last = hn::Zero(d), here = hn::Set(d, c[terms.across - 1]);
-    for (int j = terms.across - 2; j > 0; --j) {
-      const auto next = hn::MulAdd(twice_y, here, hn::Sub(hn::Set(d, c[j]), last));
-      last = here, here = next;
+    auto even = hn::Zero(d), odd = even;
+    for (int j = 0; j < terms.across; j += 2) {
+      even = hn::MulAdd(hn::Set(d, c[j]), across[j], even);
+      if (j + 1 < terms.across) odd = hn::MulAdd(hn::Set(d, c[j + 1]), across[j + 1], odd);
     }
-    sum = hn::MulAdd(polynomial, hn::MulAdd(y, here, hn::Sub(hn::Set(d, c[0]), last)), sum);
+    sum = hn::MulAdd(polynomial, hn::Add(even, odd), sum);
     const auto next = hn::MulSub(twice_x, polynomial, before);
     before = polynomial, polynomial = next;
   }

@@ -8,6 +8,7 @@ namespace petzval {
 
 /// Coefficients of T_i(x) T_j(y), for each i those of all j, the first of them `stride` apart.
 struct ChebyshevTerms {
+  static constexpr int most_across = 12;
   const double* coefficients;
   int along, across;  ///< at least one and two
   int stride;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/measure/sfr/edge_rows.cpp"
@@ -17,8 +18,7 @@
 namespace petzval {
 namespace {
 
-constexpr int support = EdgeRows::support, spline_lanes = EdgeRows::spline_lanes,
-              spline_room = EdgeRows::spline_room;
+constexpr int support = EdgeRows::support, spline_lanes = EdgeRows::spline_lanes;
 
 /// Where rows are written to.
 struct RowsTarget {
@@ -52,6 +52,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<double, spline_lanes>;
+using Vector = hn::Vec<Lanes>;
 
 /// At a time: arithmetic that points have in common is done for so many, into places beside one another.
 constexpr int block = 8;
@@ -114,9 +115,9 @@ HWY_ATTR void make_rows(std::span<const EdgePoint> points, const EdgeSpreadBasis
     for (std::size_t i = 0; i < count; ++i)
       at.distance[i] = points[begin + i].distance, at.missing[i] = points[begin + i].missing;
     evaluate_forms(at, core_px, per_knot);
-    for (std::size_t i = 0; i < count; ++i, row += made.fixed_lanes + spline_room) {
+    for (std::size_t i = 0; i < count; ++i, row += made.fixed_lanes + spline_lanes) {
       const EdgePoint& point = points[begin + i];
-      clear(row, made.fixed_lanes + spline_room);
+      clear(row, made.fixed_lanes + spline_lanes);
       row[0] = 1, row[1] = at.step[i], row[2] = at.tail1[i], row[3] = at.tail3[i];
       make_fixed(point, core_px, basis.light_order, row);
       row[made.fixed_lanes - 1] = point.value;
@@ -136,30 +137,65 @@ HWY_ATTR HWY_INLINE void add_multiple(double factor, const double* values, int c
     hn::StoreU(hn::MulAdd(f, hn::LoadU(d, values + v), hn::LoadU(d, sums + v)), d, sums + v);
 }
 
-template <int fixed_lanes>
-HWY_ATTR void add_products(const EdgeRows& rows, const double* weights, int fixed, double* columns,
-                           double* corner) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double* const row = rows.fixed(i);
-    const double weight = weights == nullptr ? 1 : weights[i];
-    for (int r = 0; r < fixed; ++r) add_multiple(weight * row[r], row, fixed_lanes, corner + r * fixed_lanes);
-    if (rows.first(i) < 0) continue;
-    const double* const splines = row + fixed_lanes;
-    double* column = columns + rows.first(i) * (spline_lanes + fixed_lanes);
+/// From interval to interval, so that sums over its points stay in registers.
+template <int fixed, int fixed_lanes>
+HWY_ATTR void add_products(const EdgeRows& rows, const double* weights, double* columns, double* corner) {
+  const Lanes d;
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(Lanes())), of_splines = spline_lanes / lanes,
+                of_fixed = fixed_lanes / lanes;
+  Vector corners[fixed][of_fixed];
+  for (auto& sums : corners)
+    for (Vector& sum : sums) sum = hn::Zero(d);
+  for (int cell = -1; cell < rows.cells(); ++cell) {
+    const std::span<const std::uint32_t> points = rows.in_cell(cell);
+    if (points.empty()) continue;
+    Vector within[support][of_splines], beside[support][of_fixed];
+    for (int p = 0; p < support; ++p) {
+      for (int v = 0; v < of_splines; ++v) within[p][v] = hn::Zero(d);
+      for (int v = 0; v < of_fixed; ++v) beside[p][v] = hn::Zero(d);
+    }
+    for (const std::uint32_t i : points) {
+      const double* const row = rows.fixed(i);
+      const double* const splines = row + fixed_lanes;
+      const auto weight = hn::Set(d, weights == nullptr ? 1 : weights[i]);
+      Vector others[of_fixed], own[of_splines];
+      for (int v = 0; v < of_fixed; ++v) others[v] = hn::Mul(weight, hn::LoadU(d, row + v * lanes));
+      for (int r = 0; r < fixed; ++r)
+        for (int v = 0; v < of_fixed; ++v)
+          corners[r][v] = hn::MulAdd(hn::Set(d, row[r]), others[v], corners[r][v]);
+      if (cell < 0) continue;
+      for (int v = 0; v < of_splines; ++v) own[v] = hn::Mul(weight, hn::LoadU(d, splines + v * lanes));
+      for (int p = 0; p < support; ++p) {
+        const auto factor = hn::Set(d, splines[p]);
+        for (int v = 0; v < of_splines; ++v) within[p][v] = hn::MulAdd(factor, own[v], within[p][v]);
+        for (int v = 0; v < of_fixed; ++v) beside[p][v] = hn::MulAdd(factor, others[v], beside[p][v]);
+      }
+    }
+    if (cell < 0) continue;
+    double* column = columns + cell * (spline_lanes + fixed_lanes);
     for (int p = 0; p < support; ++p, column += spline_lanes + fixed_lanes) {
-      const double factor = weight * splines[p];
-      add_multiple(factor, splines + p, support - p, column);
-      add_multiple(factor, row, fixed_lanes, column + spline_lanes);
+      double sums[spline_lanes];
+      for (int v = 0; v < of_splines; ++v) hn::StoreU(within[p][v], d, sums + v * lanes);
+      for (int q = p; q < support; ++q) column[q - p] += sums[q];
+      for (int v = 0; v < of_fixed; ++v) {
+        double* const sum = column + spline_lanes + v * lanes;
+        hn::StoreU(hn::Add(hn::LoadU(d, sum), beside[p][v]), d, sum);
+      }
     }
   }
+  for (int r = 0; r < fixed; ++r)
+    for (int v = 0; v < of_fixed; ++v) hn::StoreU(corners[r][v], d, corner + r * fixed_lanes + v * lanes);
 }
 
 HWY_ATTR void add_all_products(const EdgeRows& rows, const double* weights, int fixed, double* columns,
                                double* corner) {
-  if (rows.fixed_lanes() == 8)
-    add_products<8>(rows, weights, fixed, columns, corner);
+  static_assert(EdgeSpreadBasis::closed_forms == 4 && EdgeSpreadBasis::light_terms == std::array{0, 2, 5});
+  if (fixed == 4)
+    add_products<4, 8>(rows, weights, columns, corner);
+  else if (fixed == 6)
+    add_products<6, 8>(rows, weights, columns, corner);
   else
-    add_products<16>(rows, weights, fixed, columns, corner);
+    add_products<9, 16>(rows, weights, columns, corner);
 }
 
 /// The slope of the splines over the interval at `share` of it, per interval.
@@ -275,6 +311,20 @@ void EdgeRows::make(std::span<const EdgePoint> points, const EdgeSpreadBasis& ba
   std::fill(distance_.begin() + static_cast<std::ptrdiff_t>(points.size()), distance_.end(), 0.0);
   HWY_DYNAMIC_DISPATCH(make_rows)
   (points, basis, {rows_.data(), distance_.data(), share_.data(), first_.data(), fixed_lanes_});
+  sort_by_cell(basis.splines + margin);
+}
+
+void EdgeRows::sort_by_cell(int cells) {
+  begins_.assign(static_cast<std::size_t>(cells) + 2, 0);
+  for (const int cell : first_) ++begins_[static_cast<std::size_t>(cell + 1)];
+  std::size_t begin = 0;
+  for (std::size_t& each : begins_) begin += std::exchange(each, begin);
+  by_cell_.resize(size());
+  for (std::size_t i = 0; i < size(); ++i)
+    by_cell_[begins_[static_cast<std::size_t>(first_[i] + 1)]++] = static_cast<std::uint32_t>(i);
+  // Each beginning has moved on to the next one.
+  begins_.insert(begins_.begin(), 0);
+  begins_.pop_back();
 }
 
 EdgeRows::Products EdgeRows::products(std::span<const double> weights) const {

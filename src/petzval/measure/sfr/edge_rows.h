@@ -6,6 +6,7 @@
 #include <petzval/measure/sfr/edge_spread_basis.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,8 @@ class EdgeRows {
   static constexpr int support = EdgeSpreadBasis::support;
   /// Splines that reach beyond the core have no unknown; rows count them all the same, so that all are alike.
   static constexpr int margin = support - 1;
-  /// Room for the splines of a row in sums, and, with zeros behind them, in rows.
-  static constexpr int spline_lanes = 8, spline_room = 16;
+  /// Room for the splines of a row, with zeros behind them.
+  static constexpr int spline_lanes = 8;
 
   /// Rows of other points; memory is kept.
   void make(std::span<const EdgePoint> points, const EdgeSpreadBasis& basis);
@@ -34,6 +35,12 @@ class EdgeRows {
   std::size_t size() const { return first_.size(); }
   /// Of the splines of a row, counted from `margin` before the first unknown; −1: none.
   int first(std::size_t point) const { return first_[point]; }
+  /// The intervals between knots, and the points that lie in one of them; −1: in none.
+  int cells() const { return static_cast<int>(begins_.size()) - 2; }
+  std::span<const std::uint32_t> in_cell(int cell) const {
+    const std::size_t begin = begins_[static_cast<std::size_t>(cell + 1)];
+    return std::span(by_cell_).subspan(begin, begins_[static_cast<std::size_t>(cell + 2)] - begin);
+  }
   const double* splines(std::size_t point) const { return row(point) + fixed_lanes_; }
   /// As EdgeSpreadBasis has them, then zeros, and the value of the point in the last place.
   const double* fixed(std::size_t point) const { return row(point); }
@@ -69,12 +76,15 @@ class EdgeRows {
 
  private:
   const double* row(std::size_t point) const { return rows_.data() + point * stride(); }
-  std::size_t stride() const { return static_cast<std::size_t>(fixed_lanes_ + spline_room); }
+  std::size_t stride() const { return static_cast<std::size_t>(fixed_lanes_ + spline_lanes); }
+  void sort_by_cell(int cells);
 
   int padded_ = 0, fixed_ = 0, fixed_lanes_ = 8;
   double knot_px_ = 1;
   UnsetVector<double> rows_, distance_, share_;
   UnsetVector<int> first_;
+  std::vector<std::uint32_t> by_cell_;
+  std::vector<std::size_t> begins_;  ///< of the points of each cell in `by_cell_`, from −1 on
 };
 
 }  // namespace petzval

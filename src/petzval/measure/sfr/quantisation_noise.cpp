@@ -3,6 +3,7 @@
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <utility>
@@ -29,6 +30,21 @@ double first_harmonic(double noise2) {
 /// Cell of each sample, and the sample.
 using ByCell = std::vector<std::pair<long, std::size_t>>;
 constexpr long cells_a_step = 16;
+
+/// What cells at the same place in their step have in common.
+struct CellPart {
+  double lower = 0, upper = 0;  ///< half cosines, whose squares sum to 1
+  std::complex<double> once;    ///< exp(2πix)
+};
+
+std::array<CellPart, cells_a_step> cell_parts() {
+  std::array<CellPart, cells_a_step> parts;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double x = (static_cast<double>(i) + 0.5) / cells_a_step;
+    parts[i] = {std::cos(0.5 * pi * x), std::sin(0.5 * pi * x), std::polar(1.0, 2 * pi * x)};
+  }
+  return parts;
+}
 
 /// The most samples in a row of three steps, beyond which errors have nothing in common.
 std::size_t most_together(const ByCell& sorted) {
@@ -74,6 +90,7 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
   if (values.empty() || !matters(noise2, values.size())) return;
   std::ranges::sort(by_cell);
   if (!matters(noise2, most_together(by_cell))) return;
+  static const std::array<CellPart, cells_a_step> parts = cell_parts();
   for (const auto& [index, sample] : by_cell) order_.push_back(sample);
   for (std::size_t first = 0, last = 0; first < by_cell.size(); first = last) {
     const long index = by_cell[first].first;
@@ -87,10 +104,9 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
     Cell cell;
     cell.first = first, cell.count = last - first;
     cell.window = static_cast<int>(std::floor(x));
-    // Half cosines, whose squares sum to 1.
-    cell.lower = std::cos(0.5 * pi * (x - cell.window));
-    cell.upper = std::sin(0.5 * pi * (x - cell.window));
-    const std::complex<double> once = std::polar(1.0, 2 * pi * x);
+    const auto part = static_cast<std::size_t>(index - cells_a_step * cell.window);
+    cell.lower = parts[part].lower, cell.upper = parts[part].upper;
+    const std::complex<double> once = parts[part].once;
     std::complex<double> turn = std::sqrt(0.5 * scale) / pi;
     double left = 1, next = left_of_first;  // of harmonic k: that of the first to the power k²
     for (int k = 1; k <= harmonics; ++k) {

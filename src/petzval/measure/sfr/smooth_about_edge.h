@@ -2,6 +2,7 @@
 // A smooth function of the place about an edge, by interpolation.
 #pragma once
 
+#include <petzval/measure/sfr/chebyshev_lanes.h>
 #include <petzval/measure/sfr/edge_line.h>
 
 #include <Eigen/Core>
@@ -24,7 +25,7 @@ class SmoothAboutEdge {
   struct Nodes {
     int along = 13, across = 11;
   };
-  static constexpr int most_along = 13, most_across = 12;
+  static constexpr int most_along = 13, most_across = ChebyshevTerms::most_across;
   SmoothAboutEdge(const std::function<double(double x, double y)>& function, const EdgeLine& line,
                   DistanceRange range, Nodes nodes);
   double operator()(double x, double y) const;
