@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace petzval {
@@ -24,7 +25,8 @@ struct RoundOutline {
 std::vector<RoundOutline> round_outlines(const Plane& plane) {
   constexpr std::size_t least_points = 8;
   constexpr double least_roundness = 0.7;  // 4πA/P², 1 for a circle, 0.79 for a square
-  const Plane drawn = quiet(plane, noise_share(plane));
+  const std::optional<Plane> quieter = quiet(plane, noise_share(plane));
+  const Plane& drawn = quieter ? *quieter : plane;
   std::vector<RoundOutline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     if (!contour.closed) continue;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace petzval {
@@ -146,7 +147,8 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr std::size_t least_points = 24;
   constexpr double least_reach_px = 4;
   const double noise = noise_share(plane);
-  const Plane drawn = quiet(plane, noise);
+  const std::optional<Plane> quieter = quiet(plane, noise);
+  const Plane& drawn = quieter ? *quieter : plane;
   std::vector<TargetOutline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     std::vector<ContourPoint> corners = straightened(contour, options.tolerance_px);

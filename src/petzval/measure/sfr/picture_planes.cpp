@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <functional>
 #include <string_view>
 
 namespace petzval {
@@ -23,8 +22,8 @@ namespace petzval {
 namespace {
 
 /// Planes of interleaved samples; `value` turns the index of a sample into light.
-PicturePlanes deinterleaved(int columns, int rows, int channels, int wanted,
-                            const std::function<double(std::size_t)>& value) {
+template <typename Value>
+PicturePlanes deinterleaved(int columns, int rows, int channels, int wanted, const Value& value) {
   PicturePlanes picture;
   picture.columns = columns, picture.rows = rows;
   picture.rgb = wanted == 3;

@@ -49,10 +49,11 @@ double noise_share(const Plane& plane) {
   return noise_of(plane) / std::max(1e-300, *high - *low);
 }
 
-Plane quiet(const Plane& plane, double share) {
+std::optional<Plane> quiet(const Plane& plane, double share) {
   const int passes = share < 0.005 ? 0 : share < 0.02 ? 1 : share < 0.05 ? 3 : 6;
-  Plane result = plane;
-  for (int i = 0; i < passes; ++i) result = smoothed(result);
+  if (passes == 0) return std::nullopt;
+  Plane result = smoothed(plane);
+  for (int i = 1; i < passes; ++i) result = smoothed(result);
   return result;
 }
 
