@@ -53,8 +53,8 @@ int main(int argc, char** argv) {
 #endif
   CLI::App program{"Petzval simulates a digital camera from the glass up.", "petzval"};
   app::Shared shared;
-  app::add_all_commands(program, shared);
   std::vector<std::string> words = app::with_help_option({argv + 1, argv + argc});
+  app::add_commands(program, shared, words);
   try {
     app::refuse_unknown_words(program, words);
     app::arrange_help(program, words);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <petzval/base/version.h>
 
+#include <array>
+
 namespace petzval::app {
 
 namespace {
@@ -23,31 +25,28 @@ std::pair<CLI::App*, std::string> reached(CLI::App& program) {
 
 }  // namespace
 
-void add_all_commands(CLI::App& program, Shared& shared) {
+void add_commands(CLI::App& program, Shared& shared, const std::vector<std::string>& words) {
+  struct Command {
+    const char* name;
+    void (*add)(CLI::App&, Shared&);
+  };
+  // In the order of the help.
+  constexpr std::array<Command, 21> commands{
+      {{"lens", add_lens_commands},     {"glass", add_glass_commands},    {"scene", add_scene_commands},
+       {"optics", add_optics_commands}, {"image", add_image_command},     {"render", add_render_command},
+       {"shoot", add_shoot_command},    {"focus", add_focus_command},     {"compare", add_compare_command},
+       {"target", add_target_command},  {"sfr", add_sfr_command},         {"sensor", add_sensor_commands},
+       {"sense", add_sense_command},    {"develop", add_develop_command}, {"measure", add_measure_command},
+       {"sweep", add_sweep_command},    {"demo", add_demo_command},       {"handout", add_handout_command},
+       {"merge", add_merge_command},    {"live", add_live_command},       {"dataset", add_dataset_commands}}};
   program.set_version_flag("--version", std::string("petzval ") + version());
   program.set_help_flag("-h,--help", "Prints this help");
   program.require_subcommand(1);
-  add_lens_commands(program, shared);
-  add_glass_commands(program, shared);
-  add_scene_commands(program, shared);
-  add_optics_commands(program, shared);
-  add_image_command(program, shared);
-  add_render_command(program, shared);
-  add_shoot_command(program, shared);
-  add_focus_command(program, shared);
-  add_compare_command(program, shared);
-  add_target_command(program, shared);
-  add_sfr_command(program, shared);
-  add_sensor_commands(program, shared);
-  add_sense_command(program, shared);
-  add_develop_command(program, shared);
-  add_measure_command(program, shared);
-  add_sweep_command(program, shared);
-  add_demo_command(program, shared);
-  add_handout_command(program, shared);
-  add_merge_command(program, shared);
-  add_live_command(program, shared);
-  add_dataset_commands(program, shared);
+  // A sweep asks the commands that it runs for their options.
+  if (!words.empty() && words.front() != "sweep")
+    for (const Command& command : commands)
+      if (words.front() == command.name) return command.add(program, shared);
+  for (const Command& command : commands) command.add(program, shared);
   add_help_commands(program);
 }
 

@@ -6,8 +6,9 @@
 
 namespace petzval::app {
 
-/// Adds every command to a program named "petzval".
-void add_all_commands(CLI::App& program, Shared& shared);
+/// Adds to a program named "petzval" the command, or the group of commands, that the first word names; if it
+/// names none, or a sweep, which runs others, all of them.
+void add_commands(CLI::App& program, Shared& shared, const std::vector<std::string>& words);
 
 /// A mistake on the command line in one line: what is right, and which --help tells more.
 std::string usage_message(CLI::App& program, const CLI::ParseError& error);

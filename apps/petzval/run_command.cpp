@@ -18,7 +18,7 @@ CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* re
   Shared shared;
   shared.renders = renders;
   shared.frames = frames;
-  add_all_commands(program, shared);
+  add_commands(program, shared, arguments);
   const JsonTaker taker;
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
   try {

@@ -70,7 +70,7 @@ class CommandLineCheck {
  public:
   CommandLineCheck() {
     shared_.parse_only = true;
-    add_all_commands(program_, shared_);
+    add_commands(program_, shared_, {});
   }
   /// \returns what is wrong, or nothing.
   std::string complaint(std::vector<std::string> arguments) {
