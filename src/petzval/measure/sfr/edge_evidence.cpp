@@ -119,7 +119,7 @@ double edge_evidence(const EdgeProfile& profile, const std::vector<EdgeSample>& 
     return least;
   };
 
-  // A hundred samples that say many times what is needed are enough, as of edges without noise.
+  // Some hundred samples are enough where they say several times what is needed, as of edges without noise.
   constexpr std::size_t fewest = 120, few = 500;
   constexpr double plainly = 4;
   if (const std::size_t stride = size / fewest; stride > 1)
