@@ -33,13 +33,16 @@ class EdgeFit {
   void run(const SfrOptions& options);
 
   /// The same profile by other splines, finer ones, which end nearer, and of samples about the middle of the
-  /// edge alone, as far as they are close enough together: towards the ends corners change the profile.
+  /// edge alone, as far as they are close enough together: towards the ends corners change the profile. Where
+  /// samples near corners have been left out, the profile with them, too.
   struct Variant {
     EdgeSpreadModel model;
-    double share;  ///< of the samples
+    double share;             ///< of the samples
+    double corners_left = 0;  ///< of what corners add to the profile of all samples, the part that these have
   };
-  Variant variant() const;
+  std::vector<Variant> variants() const;
   double noise() const { return noise_; }
+  bool quiet() const;
 
   const EdgeLine& line() const { return line_; }
   const EdgeProfile& profile() const { return profile_; }
@@ -52,6 +55,11 @@ class EdgeFit {
  private:
   void find_missing(const std::function<double(double, double)>& missing_target);
   void place_samples();
+  void keep_clear_of_corners();
+  bool close_enough(const std::vector<EdgePoint>& part, const std::vector<EdgePoint>& all) const;
+  double clear_of_corners() const;
+  double reach_of_blur_px() const;
+  double added_by_corners(const std::vector<EdgePoint>& points) const;
   void expect_light();
   void fit_placed();
   void fit_profile();
@@ -75,6 +83,9 @@ class EdgeFit {
   std::optional<EdgeSpreadModel> model_;
   std::vector<double> missing_, light_;  ///< of each sample
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
+  std::vector<ContourPoint> corners_;
+  std::vector<Variant> near_corners_;
+  double most_along_ = 1;  ///< samples farther along the edge are left out
   int light_order_ = 0;
   bool in_rows_ = false, coarse_ = false;
 };

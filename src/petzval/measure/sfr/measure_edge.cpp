@@ -178,19 +178,17 @@ std::vector<double> usual_frequencies() {
 /// What |transform| may be off by, for all reasons together.
 class Uncertainty {
  public:
-  Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise) : fit_(fit), noise_(noise) {
-    // What a model of splines and a tail cannot follow shows where there is next to no noise: in what other
-    // splines make of samples far from the corners, and in how far the tail is extrapolated.
-    constexpr double quiet = 1e-3;
-    if (fit.noise() < quiet * fit.model().step() && fit.comb_px() == 0) variant_.emplace(fit.variant());
-    constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
-    tail_ = extrapolated / std::min(-fit.profile().low, fit.profile().high);
+  Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise)
+      : fit_(fit), noise_(noise), variants_(fit.variants()) {
+    constexpr double extrapolated = 6e-3;  // of the tail, for samples up to a pixel from the edge
+    const double reach = std::min(-fit.profile().low, fit.profile().high);
+    tail_ = extrapolated * std::abs(fit.model().tail_px()) / reach;
   }
   /// \param transforms  of the model, at the frequencies.
   std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp,
                                 const std::vector<std::complex<double>>& transforms) const {
     std::vector<double> deviations = noise_.of_moduli(frequencies_cpp, transforms);
-    const std::vector<double> differences = from_variant(frequencies_cpp, transforms, deviations);
+    const std::vector<double> differences = from_variants(frequencies_cpp, transforms, deviations);
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       const double f = frequencies_cpp[i];
       constexpr double all_of_it_cpp = 0.02;
@@ -201,23 +199,30 @@ class Uncertainty {
   }
 
  private:
-  /// Differences from the variant, beyond what noise alone makes of those from a part of the samples.
-  std::vector<double> from_variant(const std::vector<double>& frequencies_cpp,
-                                   const std::vector<std::complex<double>>& transforms,
-                                   const std::vector<double>& noise) const {
-    std::vector<double> differences(frequencies_cpp.size());
-    if (!variant_) return differences;
-    const std::vector<std::complex<double>> others = variant_->model.transforms(frequencies_cpp);
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      const double all = std::abs(others[i]) - std::abs(transforms[i]);
-      differences[i] = std::sqrt(std::max(0.0, all * all - noise[i] * noise[i] * (1 / variant_->share - 1)));
+  /// Differences from the variants, beyond what noise alone makes of those from a part of the samples.
+  std::vector<double> from_variants(const std::vector<double>& frequencies_cpp,
+                                    const std::vector<std::complex<double>>& transforms,
+                                    const std::vector<double>& noise) const {
+    constexpr double plain = 8;  // three standard deviations
+    const double least = fit_.quiet() ? 0 : plain;
+    std::vector<double> squares(frequencies_cpp.size());
+    for (const EdgeFit::Variant& variant : variants_) {
+      const std::vector<std::complex<double>> others = variant.model.transforms(frequencies_cpp);
+      const double told = std::max(0.1, std::abs(1 - variant.corners_left));  // of what corners add
+      for (std::size_t i = 0; i < others.size(); ++i) {
+        const double difference = std::abs(others[i]) - std::abs(transforms[i]);
+        const double of_noise = noise[i] * noise[i] * std::abs(1 / variant.share - 1);
+        const double shown = difference * difference - of_noise;
+        if (shown > least * of_noise) squares[i] += shown / (told * told);
+      }
     }
-    return differences;
+    for (double& square : squares) square = std::sqrt(square);
+    return squares;
   }
 
   const EdgeFit& fit_;
   const EdgeSpreadModel::Deviation& noise_;
-  std::optional<EdgeFit::Variant> variant_;
+  std::vector<EdgeFit::Variant> variants_;
   double tail_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <petzval/measure/sfr/edge_line.h>
 #include <petzval/measure/sfr/edge_samples.h>
+#include <petzval/measure/sfr/level_contours.h>
 
 #include <array>
 #include <functional>
@@ -24,6 +25,8 @@ struct SfrOptions {
   /// sum of ∬ r⁻³ dA [1/pixel] over what is bright beyond the half-plane minus what is missing from it.
   /// Empty: the target is a half-plane.
   std::function<double(double x, double y)> missing_target;
+  /// Where the target has corners at the ends of the edge, as far as it is known [pixels].
+  std::vector<ContourPoint> corners;
   /// Pixel values from which on the sensor clips, or up to which it does: such pixels spoil an edge.
   std::optional<double> clip_low, clip_high;
   /// The light of each code value, rising, where values have been rounded to them; empty: they have not. They

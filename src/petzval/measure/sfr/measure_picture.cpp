@@ -228,6 +228,8 @@ class Measurement {
         options.least_radius_px = EdgeSearchOptions().least_radius_px();
         options.places = static_cast<double>(channel.plane.values.size());
       }
+      if (edge->corner_at_from) options.corners.push_back(edge->from);
+      if (edge->corner_at_to) options.corners.push_back(edge->to);
       options.missing_target =
           sampled ? MissingTarget::where_sampled(*edge) : MissingTarget::everywhere(*edge);
     }
