@@ -102,5 +102,33 @@ TEST(SceneDetail, KnowsTheDirectionOfWaves) {
   EXPECT_LT(share_along_radius({32, 480, 5}), 0.05);
 }
 
+// Each lens shows the scene at another scale: what one has looked at must not be what the next one gets.
+TEST(KnownDetail, IsThatOfAFirstLookWhateverCameBefore) {
+  ChartOptions options;
+  options.columns = 128, options.rows = 96;
+  options.wavelengths_nm = {500, 600};
+  const Scene board = checkerboard_chart(options, 8);
+  const SensorGeometry sensor{64, 48, 5}, wider{80, 48, 5};
+  const double scale = KnownDetail::rounded_scale(2), step = std::exp2(1.0 / 64);
+  EXPECT_NEAR(scale, 2, 0.012);
+  KnownDetail known;
+  const auto expect_as_first = [&](int band, double samples_per_pixel, const SensorGeometry& geometry) {
+    KnownDetail fresh;
+    const SceneDetail &one = known.of(board, band, samples_per_pixel, geometry),
+                      &other = fresh.of(board, band, samples_per_pixel, geometry);
+    EXPECT_EQ(one.power, other.power);
+    EXPECT_EQ(one.mean, other.mean);
+    EXPECT_EQ(one.variance_of_neighbours, other.variance_of_neighbours);
+  };
+  for (const double off : {1.0, 1.004, 0.996}) expect_as_first(0, off * scale, sensor);
+  EXPECT_EQ(known.looks(), 1);
+  expect_as_first(1, scale, sensor);
+  expect_as_first(0, scale, wider);
+  expect_as_first(0, scale * step, sensor);
+  expect_as_first(0, scale / step, sensor);
+  expect_as_first(0, scale, sensor);  // long forgotten, or not
+  EXPECT_GE(known.looks(), 5);
+}
+
 }  // namespace
 }  // namespace petzval

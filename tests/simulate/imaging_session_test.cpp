@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
+#include <petzval/simulate/imaging_memory.h>
 #include <petzval/simulate/imaging_session.h>
 
 #include <algorithm>
@@ -79,6 +80,19 @@ TEST(ImagingSession, DoesOnlyWhatAnAlterationAsksFor) {
   EXPECT_EQ(session.work().images_formed, 3);
   EXPECT_EQ(session.work().tables_made, 2);
   EXPECT_EQ(session.work().scenes_read, 1);
+}
+
+TEST(ImagingMemory, KnowsTheDetailOfTheSceneBehindTheNextLens) {
+  ImagingMemory memory;
+  Camera camera = session_camera();
+  for (const double gap : {1.0, 1.0001, 1.0001}) {
+    camera.lens.surfaces[3].thickness_mm *= gap;
+    ImagePlan plan = plan_image(session_request(), camera, {}, {}, memory);
+    ASSERT_NE(plan.memory, nullptr);
+    image(plan);
+    EXPECT_EQ(plan.memory->detail.looks(), 1);
+    memory.give_back(plan);
+  }
 }
 
 TEST(ImagingSession, TellsItsNotesEachTime) {

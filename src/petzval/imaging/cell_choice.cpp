@@ -69,7 +69,7 @@ LightPath CellChoice::path(int points) const {
 }
 
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                        const ImagingOptions& options) {
+                        const ImagingOptions& options, KnownDetail* known) {
   if (options.method == BlurMethod::none) {
     CellChoice as_they_are;
     as_they_are.cells = options.cells_per_pixel();
@@ -80,7 +80,8 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
   const double samples = samples_per_pixel(scene, table, wavelength_nm, sensor, options.fit);
   const FrameTransfer lens(table, wavelength_nm, sensor);
-  const SceneDetail detail = detail_of(scene, middle, samples, sensor);
+  KnownDetail nothing;
+  const SceneDetail& detail = (known != nullptr ? known : &nothing)->of(scene, middle, samples, sensor);
   // From little work to much.
   struct Filter {
     int parts;

@@ -45,7 +45,8 @@ struct CellChoice {
 /// In the scene's middle band, the cells and the source filter that take the least work of those whose error
 /// leaves the blur what it may take of the tolerance: 2 cells at least, but for previews, and
 /// ImagingOptions::most_cells at most. Where the options name the cells, the filter of the least error.
+/// \param known  of the same scene, or null.
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                        const ImagingOptions& options);
+                        const ImagingOptions& options, KnownDetail* known = nullptr);
 
 }  // namespace petzval

@@ -77,14 +77,15 @@ std::vector<AimedLight> on_cells(std::span<const AimedLight> lights, int cells_p
 }  // namespace
 
 Formation::Formation(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
-                     const ImagingOptions& asked, bool keeps)
+                     const ImagingOptions& asked, bool keeps, FormationMemory* memory)
     : scene(of_scene),
       table(of_table),
       sensor(of_sensor),
       options(asked),
       may_keep(keeps),
       centres(checked()) {
-  const CellChoice choice = choose_cells(scene, table, sensor, options);
+  const CellChoice choice =
+      choose_cells(scene, table, sensor, options, memory != nullptr ? &memory->detail : nullptr);
   options.supersample = choice.cells;
   contrast = choice.contrast;
   of_all.table_error = table.interpolation_error;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/imaging/band_blur.h>
+#include <petzval/imaging/formation_memory.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/pixel_gather.h>
 #include <petzval/imaging/source_light.h>
@@ -20,10 +21,11 @@ class BandProgress;
 /// What all images of a scene through one table share, and the bands that are formed at a time.
 class Formation {
  public:
-  /// \param keeps  kernels are kept for more images, where there is room.
+  /// \param keeps  kernels are kept for more images, where there is room. \param memory  of earlier images of
+  /// the scene, or null.
   /// \throws InputError for whatever form() would refuse but an aim.
   Formation(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
-            const ImagingOptions& asked, bool keeps);
+            const ImagingOptions& asked, bool keeps, FormationMemory* memory = nullptr);
   /// \param take  is handed each band of every light, then the next band.
   void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
             ImagingReport& report, const BandShare& share = {});

@@ -21,14 +21,14 @@ namespace petzval {
 /// The picture, or its sharp part and the light that lands far away.
 struct ImageSeries::Impl {
   Impl(const Scene& scene, const LensDataTable& table, const SensorGeometry& of_sensor,
-       const ImagingOptions& options, bool keeps, bool is_tail = false)
+       const ImagingOptions& options, bool keeps, FormationMemory* memory = nullptr, bool is_tail = false)
       : sensor(of_sensor),
         split(split_table(table, sensor, options)),
-        picture(scene, split ? split->sharp : table, sensor, options, keeps) {
+        picture(scene, split ? split->sharp : table, sensor, options, keeps, memory) {
     if (split)
       tails = std::make_unique<Impl>(scene, split->tails,
                                      coarse_frame(sensor, tail_coarseness(options.tail_pixels)),
-                                     of_tails(options, tail_strength(*split), is_tail), keeps, true);
+                                     of_tails(options, tail_strength(*split), is_tail), keeps, memory, true);
   }
 
   /// \param strength  tail_strength(). \param again  what is split is a tail.
@@ -136,16 +136,16 @@ void ImagingOptions::validate() const {
 
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
-                ImagingReport* report, const BandShare& share) {
+                ImagingReport* report, const BandShare& share, FormationMemory* memory) {
   ImagingReport unwanted;
   const AimedLight straight;
-  ImageSeries::Impl(scene, table, sensor, options, false)
+  ImageSeries::Impl(scene, table, sensor, options, false, memory)
       .form(std::span(&straight, 1), take, progress, report != nullptr ? *report : unwanted, share);
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress,
-                         ImagingReport* report, const BandShare& share) {
+                         ImagingReport* report, const BandShare& share, FormationMemory* memory) {
   // What does not fit is refused before there is room for an image.
   std::optional<SpectralImage> image;
   int bands = 0;
@@ -154,7 +154,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     image->store_band(bands++, pixels);
     image->release_memory();
   };
-  form_bands(scene, table, sensor, options, put, progress, report, share);
+  form_bands(scene, table, sensor, options, put, progress, report, share, memory);
   image->lens = lens_facts(table.lens_name, table.first_order);
   add_corrections(*image->lens, table, sensor);
   return std::move(*image);

@@ -26,6 +26,8 @@
 
 namespace petzval {
 
+struct FormationMemory;
+
 enum class BlurMethod {
   none,      ///< distortion and illumination alone
   product,   ///< mixtures of kernels by tiles, as many as the tolerance needs: fast, the default
@@ -130,9 +132,11 @@ struct BandShare {
 ///   by how many degrees. The bytes do not depend on the number of threads.
 ///
 /// \param share  of the bands, when several processes form one image: it knows those of others.
+/// \param memory  of images of this scene, or null.
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress = {},
-                         ImagingReport* report = nullptr, const BandShare& share = {});
+                         ImagingReport* report = nullptr, const BandShare& share = {},
+                         FormationMemory* memory = nullptr);
 
 /// What is done with the pixels of a band, row by row.
 using TakeBand = std::function<void(std::span<const float> pixels)>;
@@ -140,7 +144,8 @@ using TakeBand = std::function<void(std::span<const float> pixels)>;
 /// The same without keeping the bands: each is handed over as it is ready, in order.
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress = {},
-                ImagingReport* report = nullptr, const BandShare& share = {});
+                ImagingReport* report = nullptr, const BandShare& share = {},
+                FormationMemory* memory = nullptr);
 
 /// Several images of one scene, the camera turned or the scene moved: what they share is made once, the
 /// kernels of each band too where there is memory for them. Everything given must outlive it.

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace petzval {
 
@@ -289,6 +290,23 @@ SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, co
   }
   if (pieces != 0) detail.mean /= pieces;
   return detail;
+}
+
+double KnownDetail::rounded_scale(double samples_per_pixel) {
+  constexpr double steps = 64;
+  return std::exp2(std::round(steps * std::log2(samples_per_pixel)) / steps);
+}
+
+const SceneDetail& KnownDetail::of(const Scene& scene, int band, double samples_per_pixel,
+                                   const SensorGeometry& sensor) {
+  const Key key{band, rounded_scale(samples_per_pixel), sensor.columns, sensor.rows, sensor.pitch_um};
+  for (const Known& known : known_)
+    if (known.key == key) return known.detail;
+  constexpr std::size_t most = 4;  // a frame and its tails, at two scales
+  SceneDetail detail = detail_of(scene, band, key.samples_per_pixel, sensor);
+  ++looks_;
+  if (known_.size() == most) known_.pop_front();
+  return known_.emplace_back(Known{key, std::move(detail)}).detail;
 }
 
 }  // namespace petzval

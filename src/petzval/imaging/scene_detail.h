@@ -6,6 +6,7 @@
 #include <petzval/scene/scene.h>
 
 #include <array>
+#include <deque>
 #include <vector>
 
 namespace petzval {
@@ -28,5 +29,33 @@ struct SceneDetail {
 /// \param samples_per_pixel  along a side, on the axis: distortion is left out.
 /// (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967.)
 SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor);
+
+/// The detail of one scene for one image after another: what was looked at last is kept. Each lens shows the
+/// scene at a scale of its own, so scales are rounded, here and wherever a detail is to be the same for a
+/// single image.
+class KnownDetail {
+ public:
+  /// To the nearest of 64 steps in a factor of two: frequencies are off by half a per cent at most.
+  static double rounded_scale(double samples_per_pixel);
+  /// detail_of() at the rounded scale. \param scene  always the same. \return  valid until the next call.
+  const SceneDetail& of(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor);
+  /// How often it had to look.
+  int looks() const { return looks_; }
+
+ private:
+  struct Key {
+    int band;
+    double samples_per_pixel;
+    int columns, rows;
+    double pitch_um;
+    bool operator==(const Key&) const = default;
+  };
+  struct Known {
+    Key key;
+    SceneDetail detail;
+  };
+  std::deque<Known> known_;
+  int looks_ = 0;
+};
 
 }  // namespace petzval

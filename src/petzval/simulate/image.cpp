@@ -91,7 +91,7 @@ SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* 
   SpectralImage light = result_within(context, [&](const ProgressCallback& progress) {
     if (!plan.depth)
       return form_image(plan.scene, plan.table, plan.frame, plan.options.imaging, progress, &says.imaging,
-                        share);
+                        share, plan.memory.get());
     DepthReport deep;
     SpectralImage formed = form_depth_image(plan.scene, *plan.depth, plan.frame, plan.options.imaging,
                                             plan.options.depth, progress, &deep, share);
@@ -126,8 +126,8 @@ void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& con
                        progress, &deep, share);
       return tell(std::move(deep), says);
     }
-    form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging,
-               share);
+    form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging, share,
+               plan.memory.get());
   });
   finish(plan, context, says);
 }

@@ -12,6 +12,7 @@
 #include <petzval/simulate/flare.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -57,6 +58,8 @@ struct ImagePlan {
   SensorGeometry frame;
   ImageOptions options;
   std::optional<LitLens> lens = {};  ///< if it is not a table alone
+  /// Of earlier images of the same scene; absent: there are none.
+  std::shared_ptr<FormationMemory> memory = {};
 };
 
 /// What there is to say about an image.

@@ -392,6 +392,7 @@ ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, con
     throw InputError("`layers` is for scenes with depth; this one is a plane (`scene.depth` gives it a map)");
   run_within(context,
              [&](const ProgressCallback&) { fit_to_each_other(result, optics, request, context, memory); });
+  if (memory != nullptr) result.memory = memory->formation();
   return result;
 }
 

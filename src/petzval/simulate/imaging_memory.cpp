@@ -29,6 +29,12 @@ Scene ImagingMemory::scene(const SceneRequest& request, const std::function<Scen
   return taken;
 }
 
+std::shared_ptr<FormationMemory> ImagingMemory::formation() const {
+  for (const KeptScene& kept : scenes_)
+    if (scene_in_use_ && kept.key == *scene_in_use_) return kept.formation;
+  return of_only_scene_;
+}
+
 void ImagingMemory::give_back(Scene& scene) {
   if (!scene_in_use_) return;
   for (KeptScene& kept : scenes_) {

@@ -2,10 +2,12 @@
 // What is kept between the plans of one scene and set of options.
 #pragma once
 
+#include <petzval/imaging/formation_memory.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/imaging_session.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +27,9 @@ class ImagingMemory {
   const std::string& lens_key() const { return lens_key_; }
   void set_lens_key(std::string key) { lens_key_ = std::move(key); }
 
+  /// For images of the scene in use.
+  std::shared_ptr<FormationMemory> formation() const;
+
   void give_back(Scene& scene);
   void give_back(ImagePlan& plan);
   ImagingSession::Work work = {};
@@ -40,7 +45,10 @@ class ImagingMemory {
     double horizontal_angle_deg;
     std::optional<double> distance_m;
     std::optional<Scene> scene;  ///< absent: in use
+    std::shared_ptr<FormationMemory> formation = std::make_shared<FormationMemory>();
   };
+  std::shared_ptr<FormationMemory> of_only_scene_ =
+      std::make_shared<FormationMemory>();  ///< of none of these
   std::vector<KeptScene> scenes_;
   std::optional<SceneKey> scene_in_use_;
   std::string lens_key_, table_key_;

@@ -9,8 +9,8 @@
 namespace petzval {
 
 /// Images one scene through one camera after the other, and keeps what an alteration leaves valid: the scene
-/// as it was read or drawn, the lens data table of the last lens, the last image. What comes of it has the
-/// bytes of image().
+/// as it was read or drawn, how fine its detail is, the lens data table of the last lens, the last image.
+/// What comes of it has the bytes of image().
 ///
 ///     ImagingSession session(SceneRequest{.name = "studio"});
 ///     for (const double gap_mm : {6.0, 6.5, 7.0}) {
