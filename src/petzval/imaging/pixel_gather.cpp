@@ -4,6 +4,8 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/pixel_gather.h>
+#include <petzval/imaging/row_phases.h>
+#include <petzval/imaging/row_sums.h>
 #include <petzval/imaging/smooth_psf.h>
 
 #include <Eigen/Dense>
@@ -111,6 +113,11 @@ std::vector<Strip> strips_of(const Photosite& site) {
   return strips;
 }
 
+/// PixelTaps::Term as cells are weighed.
+struct FloatTerm {
+  std::vector<float> down, across;
+};
+
 double sum_of_waves(const std::vector<double>& weights, double f_cpp, int cells) {
   double sum = 0;
   for (std::size_t i = 0; i < weights.size(); ++i)
@@ -176,30 +183,23 @@ CellPlane gathered(CellPlane plane, const PixelTaps& taps, RowRange wanted) {
   const SensorGeometry inner = grown(plane.grid, -taps.reach);
   CellPlane result =
       CellPlane::unset({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});
-  const auto step = static_cast<std::size_t>(taps.cells), size = static_cast<std::size_t>(taps.size());
+  const auto step = static_cast<std::size_t>(taps.cells);
+  std::vector<FloatTerm> terms;
+  for (const PixelTaps::Term& term : taps.terms)
+    terms.push_back({{term.down.begin(), term.down.end()}, {term.across.begin(), term.across.end()}});
   constexpr std::size_t rows_at_once = 8;
   parallel_for((result.rows() + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {
-    std::vector<double> column_sums(plane.columns()), pixels(result.columns());
+    std::vector<float> column_sums(plane.columns()), phases;
     const std::size_t end = std::min(result.rows(), (block + 1) * rows_at_once);
     for (std::size_t row = block * rows_at_once; row < end; ++row) {
-      if (!wanted.holds(static_cast<int>(row))) {
-        std::fill_n(result.row(row), result.columns(), 0.0F);
-        continue;
+      const std::span<float> pixels(result.row(row), result.columns());
+      std::ranges::fill(pixels, 0.0F);
+      if (!wanted.holds(static_cast<int>(row))) continue;
+      for (const FloatTerm& term : terms) {
+        sum_down(plane.row(row * step), plane.columns(), term.down, column_sums);
+        sort_out_phases(column_sums, step, phases);
+        add_along(phases, step, term.across, pixels);
       }
-      std::fill(pixels.begin(), pixels.end(), 0.0);
-      for (const PixelTaps::Term& term : taps.terms) {
-        std::fill(column_sums.begin(), column_sums.end(), 0.0);
-        for (std::size_t i = 0; i < size; ++i) {
-          const float* cells = plane.row(row * step + i);
-          const double weight = term.down[i];
-          for (std::size_t j = 0; j < column_sums.size(); ++j) column_sums[j] += weight * double(cells[j]);
-        }
-        for (std::size_t column = 0; column < pixels.size(); ++column)
-          for (std::size_t j = 0; j < size; ++j)
-            pixels[column] += term.across[j] * column_sums[column * step + j];
-      }
-      std::transform(pixels.begin(), pixels.end(), result.row(row),
-                     [](double sum) { return static_cast<float>(sum); });
     }
   });
   return result;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/row_phases.h>
 #include <petzval/imaging/scene_rows.h>
 #include <petzval/imaging/source_light.h>
 #include <petzval/wave/photosite.h>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace petzval {
@@ -34,15 +36,24 @@ class PartRows {
         looks_(filter.weights.size()),
         kept_(sources.size() * filter.weights.size()) {}
 
+  /// Whether cells are parts, which no filter alters.
+  bool is_plain() const { return filter_.weights.size() == 1 && filter_.weights.front() == 1; }
+
   /// Filtered along the row. \param index  of the row of parts; they are asked for in order.
   const std::vector<float>& at(std::size_t source, std::size_t index) {
     Kept& row = kept_[source * looks_.size() + index % looks_.size()];
     if (row.index != index + 1) {
-      write(sources_[source], index);
+      part_row_.resize(static_cast<std::size_t>(sources_[source].rows.front()->grid().columns));
+      write(sources_[source], index, part_row_);
       filter_along(row.values);
       row.index = index + 1;
     }
     return row.values;
+  }
+
+  /// Light that is not filtered.
+  void write(std::size_t source, std::size_t index, std::span<float> values) {
+    write(sources_[source], index, values);
   }
 
  private:
@@ -56,33 +67,31 @@ class PartRows {
     std::vector<float> values = {};
   };
 
-  void write(const Source& source, std::size_t index) {
+  void write(const Source& source, std::size_t index, std::span<float> values) {
     const SceneRows& first = *source.rows.front();
     Look& look = looks_[index % looks_.size()];
     if (look.index != index + 1) {
       first.look(index, look.view);
       look.index = index + 1;
     }
-    part_row_.resize(static_cast<std::size_t>(first.grid().columns));
-    first.write(index, look.view, part_row_.data());
+    first.write(index, look.view, values.data());
     if (source.rows.size() == 1 && source.weights.front() == 1) return;
-    for (float& value : part_row_) value *= source.weights.front();
-    of_share_.resize(part_row_.size());
+    for (float& value : values) value *= source.weights.front();
+    of_share_.resize(values.size());
     for (std::size_t share = 1; share < source.rows.size(); ++share) {
       source.rows[share]->write(index, look.view, of_share_.data());
-      for (std::size_t i = 0; i < part_row_.size(); ++i) part_row_[i] += source.weights[share] * of_share_[i];
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] += source.weights[share] * of_share_[i];
     }
   }
 
-  void filter_along(std::vector<float>& values) const {
-    values.resize(cells_);
-    const auto step = static_cast<std::size_t>(filter_.parts);
-    const float* parts = part_row_.data();
-    for (float& value : values) {
-      float sum = 0;
-      for (std::size_t k = 0; k < weights_.size(); ++k) sum += weights_[k] * parts[k];
-      value = sum;
-      parts += step;
+  void filter_along(std::vector<float>& values) {
+    const auto parts = static_cast<std::size_t>(filter_.parts);
+    sort_out_phases(part_row_, parts, phases_);
+    const std::size_t length = phases_.size() / parts;
+    values.assign(cells_, 0.0F);
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      const float weight = weights_[k], *of_phase = phases_.data() + k % parts * length + k / parts;
+      for (std::size_t cell = 0; cell < cells_; ++cell) values[cell] += weight * of_phase[cell];
     }
   }
 
@@ -92,7 +101,7 @@ class PartRows {
   std::size_t cells_;
   std::vector<Look> looks_;
   std::vector<Kept> kept_;  ///< [source][row, by turns]
-  std::vector<float> part_row_, of_share_;
+  std::vector<float> part_row_, of_share_, phases_;
 };
 
 }  // namespace
@@ -144,6 +153,10 @@ std::vector<CellPlane> source_lights(const Scene& scene, int band, const SceneMa
         float* out = planes[i].row(row);
         std::fill_n(out, cells, 0.0F);
         if (!lights[i].rows.holds(static_cast<int>(row))) continue;
+        if (part_rows.is_plain()) {
+          part_rows.write(i, row, {out, cells});
+          continue;
+        }
         for (std::size_t k = 0; k < filter.weights.size(); ++k) {
           const auto weight = static_cast<float>(filter.weights[k]);
           const std::vector<float>& values =
