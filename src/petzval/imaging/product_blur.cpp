@@ -32,6 +32,8 @@ void add(const CellPlane& more, CellPlane& sum) {
 }  // namespace
 
 CellPlane ProductBlur::blur(const CellPlane& source, int margin) const {
+  if (plan().exact.empty() && !inner_)  // no light is moved, so that none need be copied
+    return std::visit([&](const auto& by) { return by.blur(source, margin); }, by_);
   if (plan().exact.empty()) return blur_by_product(source, margin);
   CellPlane rest = source, ring(source.grid);
   move_light([&](double radius) { return plan().exact.holds(radius) ? 1.0F : 0.0F; }, rest, ring);

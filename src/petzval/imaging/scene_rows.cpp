@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace petzval {
 
@@ -37,6 +38,28 @@ struct Stretch {
     return std::max(0.0, to - from) / length;
   }
 };
+
+/// What values of a smooth map lie between, over a short stretch of a row: between three places a parabola
+/// tells how far the others go.
+template <typename Value>
+std::pair<double, double> range_of(const std::vector<Value>& of, std::size_t from, std::size_t to) {
+  const std::size_t last = to - 1, half = (from + last) / 2;
+  const double ends[] = {double(of[from]), double(of[half]), double(of[last])};
+  const double bend = std::abs(ends[1] - (ends[0] + ends[2]) / 2);
+  const auto [low, high] = std::minmax({ends[0], ends[1], ends[2]});
+  return {low - bend, high + bend};
+}
+
+/// Whether a short stretch of cells looks at the scene alone. False if that takes a closer look.
+bool is_surely_inside(const PlaneView& view, const RowView& cells, std::size_t from, std::size_t to) {
+  if (from < cells.dark || to > cells.g_source_sr.size() - cells.dark) return false;
+  constexpr double room = 1;  // beyond the rectangles [samples]
+  const auto inside = [&](const std::vector<double>& middles, const std::vector<float>& sides, double size) {
+    const auto [low, high] = range_of(middles, from, to);
+    return std::max(-low, high) + range_of(sides, from, to).second / 2 + room < size / 2;
+  };
+  return inside(cells.right, cells.width, view.columns) && inside(cells.down, cells.height, view.rows);
+}
 
 PanoramaView turned(const Scene& scene, const SceneAim& aim) {
   return {scene.view().yaw_deg + aim.pan_deg, scene.view().pitch_deg + aim.pitch_deg};
@@ -171,6 +194,7 @@ void SceneRows::write_drawing(std::size_t row, const RowView& cells, const Drawn
       irradiance[column] = ((1 - covered[column]) * ground + radiance[column]) * g_source_sr[column];
   }
   const PlaneView view = view_of(radiance_);
+  if (is_surely_inside(view, cells, from, to)) return;
   for (std::size_t column = first_outside(view, cells, from, to); column < to;) {
     std::size_t end = column + 1;
     while (end < to && first_outside(view, cells, end, end + 1) == end) ++end;
@@ -184,17 +208,10 @@ std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const
   if (!flat_ || samples.data() != radiance_.data() || from < cells.dark ||
       to > cells.g_source_sr.size() - cells.dark)
     return {};
-  // Smooth maps: between three places of a short stretch a parabola tells how far the others go.
-  const std::size_t last = to - 1, half = (from + last) / 2;
-  const auto range = [&](const auto& of) {
-    const double ends[] = {double(of[from]), double(of[half]), double(of[last])};
-    const double bend = std::abs(ends[1] - (ends[0] + ends[2]) / 2);
-    const auto [low, high] = std::minmax({ends[0], ends[1], ends[2]});
-    return std::pair(low - bend, high + bend);
-  };
-  const auto [left, right] = range(cells.right);
-  const auto [top, bottom] = range(cells.down);
-  if (!(std::max(range(cells.width).second, range(cells.height).second) <= 1)) return {};
+  const auto [left, right] = range_of(cells.right, from, to);
+  const auto [top, bottom] = range_of(cells.down, from, to);
+  if (!(std::max(range_of(cells.width, from, to).second, range_of(cells.height, from, to).second) <= 1))
+    return {};
   if (!std::isfinite(left + right + top + bottom)) return {};
   constexpr double around = 1.5;  // half a cell, and the neighbour to whose centre radiance runs
   const double middle = scene_.columns() / 2.0, centre = scene_.rows() / 2.0;

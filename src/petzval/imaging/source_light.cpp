@@ -151,8 +151,10 @@ std::vector<CellPlane> source_lights(const Scene& scene, int band, const SceneMa
     for (std::size_t row = block * rows_at_once; row < end; ++row)
       for (std::size_t i = 0; i < lights.size(); ++i) {
         float* out = planes[i].row(row);
-        std::fill_n(out, cells, 0.0F);
-        if (!lights[i].rows.holds(static_cast<int>(row))) continue;
+        if (!lights[i].rows.holds(static_cast<int>(row))) {
+          std::fill_n(out, cells, 0.0F);
+          continue;
+        }
         if (part_rows.is_plain()) {
           part_rows.write(i, row, {out, cells});
           continue;
@@ -161,7 +163,10 @@ std::vector<CellPlane> source_lights(const Scene& scene, int band, const SceneMa
           const auto weight = static_cast<float>(filter.weights[k]);
           const std::vector<float>& values =
               part_rows.at(i, row * static_cast<std::size_t>(filter.parts) + k);
-          for (std::size_t cell = 0; cell < cells; ++cell) out[cell] += weight * values[cell];
+          if (k == 0)
+            for (std::size_t cell = 0; cell < cells; ++cell) out[cell] = weight * values[cell];
+          else
+            for (std::size_t cell = 0; cell < cells; ++cell) out[cell] += weight * values[cell];
         }
       }
   });

@@ -172,10 +172,12 @@ ShapesInPicture::ShapesInPicture(std::span<const Valued> shapes, int columns, in
   const auto for_rows = [&](const auto& take) {
     for (const auto& [shape, value] : shapes)
       for (const Shape::Edge& edge : shape->edges()) {
-        const auto row = [&](double y) { return static_cast<std::size_t>(std::clamp(y, 0.0, double(rows))); };
         const auto [top, bottom] = std::minmax(edge.from.y, edge.to.y);
-        const std::size_t end = row(std::ceil(bottom));
-        for (std::size_t at = row(std::floor(top)); at < end; ++at) take(at, Edge{edge, value});
+        const double last = std::clamp(bottom, 0.0, double(rows));
+        auto end = static_cast<std::size_t>(last);
+        if (double(end) < last) ++end;
+        for (auto at = static_cast<std::size_t>(std::clamp(top, 0.0, double(rows))); at < end; ++at)
+          take(at, Edge{edge, value});
       }
   };
   for_rows([&](std::size_t row, const Edge&) { ++first_[row + 1]; });
