@@ -21,6 +21,14 @@
 
 namespace {
 
+/// As the program has it.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
 using namespace petzval;
 
 /// Like the paper's lens at its object: 6 mm focal length, −10 % distortion at 3 mm, PSFs in frames of 32 µm.
@@ -265,11 +273,7 @@ void two_threads(benchmark::State& state) {
   std::vector<double> kernels, filters, images, controls;
   const auto plan = plan_product(PsfField(table, 550, frame.pitch_um), frame, {1e-3});
   if (!plan) return state.SkipWithError("no plan");
-#ifdef __GLIBC__
-  // As the program has it: what is freed is kept.
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-#endif
+  keep_freed_memory();
   for (auto _ : state)
     for (int round = 0; round < rounds; ++round) {
       std::array<double, 3> made{}, filtered{}, imaged{}, control{};
@@ -359,6 +363,7 @@ BENCHMARK(small_psfs_768x576)->ArgsProduct({{2, 4, 8, 12, 16, 24}, {0, 1}})->Uni
 void altered_lens(benchmark::State& state, const char* name, std::size_t gap, double pitch_um,
                   int samples = 0) {
   const ThreadLimit two_threads(2);
+  keep_freed_memory();
   Camera camera;
   camera.lens = read_lens(name).lens;
   camera.sensor = Sensor{.geometry = {640, 480, pitch_um}};
