@@ -7,6 +7,7 @@ transfer function times the photosite's, and that of the sharpening. `bench/hard
 import json
 import math
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -162,7 +163,7 @@ CAUSES = {
 }
 
 
-def run(program):
+def run(program, quality=85):
     results = {}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -182,8 +183,14 @@ def run(program):
             for change in changes:
                 light = change(light)
             codes = srgb(light)
-            write_png(folder / "photo.png", codes_of(codes) if codes_of else codes, bits)
-            edges = json.loads(petzval("sfr", "photo.png", "--json", "--quiet"))["edges"]
+            name = "photo.png"
+            if codes_of and shutil.which("convert"):
+                write_png(folder / name, codes, bits)
+                name = "photo.jpg"
+                subprocess.run(["convert", "photo.png", "-quality", str(quality), name], cwd=folder, check=True)
+            else:
+                write_png(folder / name, codes_of(codes, quality) if codes_of else codes, bits)
+            edges = json.loads(petzval("sfr", name, "--json", "--quiet"))["edges"]
             errors, stated = [], []
             for edge in edges:
                 truth = true_mtf50(edge["angle_deg"], sharpened in changes)
@@ -199,7 +206,7 @@ def run(program):
 
 
 if __name__ == "__main__":
-    found = run(sys.argv[1])
+    found = run(sys.argv[1], int(sys.argv[sys.argv.index("--quality") + 1]) if "--quality" in sys.argv else 85)
     if "--json" in sys.argv:
         print(json.dumps(found))
     else:

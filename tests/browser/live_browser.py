@@ -11,7 +11,7 @@ from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
+PATIENCE_S = 600  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id && !page.stale && !page.lastLayout);"""

@@ -13,6 +13,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <iterator>
 #include <string_view>
 
 namespace petzval {
@@ -91,6 +92,9 @@ class JpegReader {
     image.columns = static_cast<int>(jpeg_.image_width);
     image.rows = static_cast<int>(jpeg_.image_height);
     image.channels = jpeg_.num_components;
+    const JQUANT_TBL* table = jpeg_.quant_tbl_ptrs[jpeg_.comp_info[0].quant_tbl_no];
+    if (table != nullptr && (jpeg_.jpeg_color_space == JCS_GRAYSCALE || jpeg_.jpeg_color_space == JCS_YCbCr))
+      image.steps.assign(std::begin(table->quantval), std::end(table->quantval));
     for (const jpeg_marker_struct* m = jpeg_.marker_list; m != nullptr; m = m->next) {
       const int orientation = m->marker == JPEG_APP0 + 1
                                   ? exif_orientation({reinterpret_cast<const char*>(m->data), m->data_length})

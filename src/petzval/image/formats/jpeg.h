@@ -17,6 +17,10 @@ struct JpegImage {
   std::vector<std::uint8_t> samples;
   std::string icc_profile;                ///< empty: none
   int orientation = upright_orientation;  ///< as exif_orientation() says
+  /// To multiples of which the coefficients of blocks of 8 × 8 samples are rounded, row by row from the
+  /// lowest frequency: of grey, or of the luma of colour pictures; empty where colours are stored as they
+  /// are.
+  std::vector<int> steps = {};
 };
 
 /// Reads grey and colour pictures, baseline and progressive. Nothing is allocated before the sizes have been

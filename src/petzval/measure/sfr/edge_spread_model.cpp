@@ -220,7 +220,7 @@ double EdgeSpreadModel::unknowns() const {
 }
 
 template <int functions>
-Eigen::Matrix<double, functions, functions> EdgeSpreadModel::taken_of(std::span<const double> values) const {
+BorderedBand::Columns<functions> EdgeSpreadModel::right_sides(std::span<const double> values) const {
   const std::vector<double> projected = rows_.project(values, functions);
   const auto of_functions = Eigen::Map<const Eigen::MatrixXd>(
       projected.data(), static_cast<Eigen::Index>(rows_.projections()), functions);
@@ -228,11 +228,18 @@ Eigen::Matrix<double, functions, functions> EdgeSpreadModel::taken_of(std::span<
   sums.topRows(basis_.splines) = of_functions.middleRows(margin, basis_.splines);
   for (int r = 0; r < basis_.fixed(); ++r)
     sums.row(basis_.place(r)) = of_functions.row(rows_.padded() + EdgeRows::spline_lanes + r);
+  return sums;
+}
+
+template <int functions>
+Eigen::Matrix<double, functions, functions> EdgeSpreadModel::taken_of(std::span<const double> values) const {
+  const BorderedBand::Columns<functions> sums = right_sides<functions>(values);
   BorderedBand::Columns<functions> solved = sums;
   factor_.solve_in_place(solved);
   return sums.transpose() * solved;
 }
 
+template BorderedBand::Block EdgeSpreadModel::right_sides<BorderedBand::lanes>(std::span<const double>) const;
 template Eigen::Matrix<double, 2, 2> EdgeSpreadModel::taken_of<2>(std::span<const double>) const;
 template Eigen::Matrix<double, 4, 4> EdgeSpreadModel::taken_of<4>(std::span<const double>) const;
 template Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes>

@@ -100,8 +100,10 @@ class EdgeSpreadModel {
   /// profiles as rough as this one). `variance[i]` belongs to the i-th point that the model was made from.
   class Deviation {
    public:
+    /// \param changes  of the values that may have happened besides, each as likely: BorderedBand::lanes for
+    /// each point, one after the other; empty: none.
     Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
-              const QuantisationNoise& rounding);
+              const QuantisationNoise& rounding, std::span<const double> changes = {});
     /// \param transforms  of the model, at the frequencies.
     std::vector<double> of_moduli(std::span<const double> frequencies_cpp,
                                   std::span<const std::complex<double>> transforms) const;
@@ -119,11 +121,16 @@ class EdgeSpreadModel {
     const EdgeSpreadModel& model_;
     BorderedBand spread_;       ///< covariance of the right side of the normal equations
     Eigen::MatrixXd rounding_;  ///< and what rounding adds: lower half and half the diagonal; empty without
+    BorderedBand::Block changes_;  ///< of the right side; empty without
   };
 
  private:
   static constexpr int closed_forms = EdgeSpreadBasis::closed_forms, support = EdgeSpreadBasis::support,
                        margin = EdgeRows::margin;
+  /// Right sides of the normal equations, of other values of the points: so many for each, one after the
+  /// other.
+  template <int functions>
+  BorderedBand::Columns<functions> right_sides(std::span<const double> values) const;
   /// Normal equations of the unknowns, of these sums over the points.
   BorderedBand normal_of(const EdgeRows::Products& sums) const;
   void fit(std::span<const EdgePoint> points);

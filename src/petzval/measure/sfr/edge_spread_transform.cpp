@@ -78,13 +78,14 @@ std::vector<std::complex<double>> EdgeSpreadModel::transforms(Frequencies freque
 }
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
-                                      const QuantisationNoise& rounding)
+                                      const QuantisationNoise& rounding, std::span<const double> changes)
     : model_(model), spread_(model.normal_of(model.rows_.products(variance))) {
   const int splines = model.basis_.splines, fixed = model.basis_.fixed();
   double mean = 0;
   for (const double each : variance) mean += each / static_cast<double>(variance.size());
   // What the priors say of the profile is as uncertain as they are weak.
   spread_.add(mean, model.priors_);
+  if (!changes.empty()) changes_ = model.right_sides<BorderedBand::lanes>(changes);
   if (rounding.none()) return;
   rounding_ = Eigen::MatrixXd::Zero(spread_.size(), spread_.size());
   rounding.add_spread(
@@ -136,6 +137,9 @@ std::vector<double> EdgeSpreadModel::Deviation::of_moduli(
 std::array<double, BorderedBand::lanes> EdgeSpreadModel::Deviation::variances(
     const BorderedBand::Block& x) const {
   std::array<double, BorderedBand::lanes> result = spread_.quadratic(x);
+  if (changes_.size() > 0)
+    Eigen::Map<Eigen::Array<double, BorderedBand::lanes, 1>>(result.data()) +=
+        (x.transpose() * changes_).array().square().rowwise().mean();
   if (rounding_.size() == 0) return result;
   const BorderedBand::Block of_half = rounding_.triangularView<Eigen::Lower>() * x;
   Eigen::Map<Eigen::Array<double, 1, BorderedBand::lanes>>(result.data()) +=

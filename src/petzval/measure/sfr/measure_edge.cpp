@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 namespace petzval {
 
@@ -175,6 +176,49 @@ std::vector<double> usual_frequencies() {
   return frequencies;
 }
 
+/// By how much each sample of the profile would change, were the edge recorded in the blocks of a JPEG again,
+/// at `BorderedBand::lanes` places in them: what rounding does to their coefficients is much the same all
+/// along an edge, so that it does not average out. Where in their steps the levels of both sides lay before
+/// is not known, so they run through them.
+std::vector<double> changes_by_recording(const EdgeFit& fit, const std::vector<EdgeSample>& samples,
+                                         const RoundedBlocks& blocks, double rise_px) {
+  constexpr std::array<RoundedBlocks::Offset, BorderedBand::lanes> offsets{
+      {{0, 0}, {3, 1}, {6, 2}, {1, 3}, {4, 4}, {7, 5}, {2, 6}, {5, 7}}};
+  const auto part_of_step = [&](std::size_t i) {
+    return (static_cast<double>(i % offsets.size()) + 0.5) / offsets.size() - 0.5;
+  };
+  const double dark = fit.model().dark(), step = fit.model().step();
+  const double room_dark = blocks.room_of_means(dark), room_bright = blocks.room_of_means(dark + step);
+  std::mt19937 generator;  // of noise that is the same whatever the thread
+  const double per_draw = fit.noise() * std::sqrt(12.0) / 0x1p32;
+  // Blocks that touch the transition, and their neighbours; in others there is next to nothing but their
+  // means.
+  const EdgeProfile& profile = fit.profile();
+  const double reach = 2 * (RoundedBlocks::side + rise_px);
+  std::vector<std::size_t> near;
+  std::vector<EdgeSample> near_samples;
+  std::vector<double> expected;
+  for (std::size_t point = 0; point < profile.points.size(); ++point) {
+    if (std::abs(profile.points[point].distance) > reach) continue;
+    near.push_back(point);
+    near_samples.push_back(samples[profile.sample[point]]);
+    expected.push_back(profile.fitted[point].value + profile.variation[point]);
+  }
+  std::vector<double> result(profile.points.size() * offsets.size());
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const double off_dark = part_of_step(i) * room_dark, off_bright = part_of_step(3 * i + 1) * room_bright;
+    std::vector<double> light = expected;
+    for (double& value : light) {
+      const double share = std::clamp((value - dark) / step, 0.0, 1.0);
+      value += off_dark + share * (off_bright - off_dark);
+      value += per_draw * (static_cast<double>(generator()) - 0x1p31);
+    }
+    const std::vector<double> changes = blocks.changes(near_samples, light, offsets[i]);
+    for (std::size_t k = 0; k < near.size(); ++k) result[near[k] * offsets.size() + i] = changes[k];
+  }
+  return result;
+}
+
 /// What |transform| may be off by, for all reasons together.
 class Uncertainty {
  public:
@@ -298,7 +342,10 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
     variance.push_back(spread.dark + share * (spread.bright - spread.dark));
   }
   const QuantisationNoise rounding(options.code_levels, unrounded, variance);
-  const EdgeSpreadModel::Deviation deviation(model, variance, rounding);
+  const std::vector<double> changes =
+      options.blocks != nullptr ? changes_by_recording(fit, samples, *options.blocks, result.rise_px)
+                                : std::vector<double>();
+  const EdgeSpreadModel::Deviation deviation(model, variance, rounding, changes);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
   const Uncertainty uncertainty(fit, deviation);
   const std::vector<std::complex<double>> transforms = model.transforms(result.frequencies_cpp);

@@ -5,6 +5,7 @@
 #include <petzval/measure/sfr/edge_line.h>
 #include <petzval/measure/sfr/edge_samples.h>
 #include <petzval/measure/sfr/level_contours.h>
+#include <petzval/measure/sfr/rounded_blocks.h>
 
 #include <array>
 #include <functional>
@@ -27,6 +28,8 @@ struct SfrOptions {
   std::function<double(double x, double y)> missing_target;
   /// Where the target has corners at the ends of the edge, as far as it is known [pixels].
   std::vector<ContourPoint> corners;
+  /// Of a JPEG: how it was recorded. Outlives the options; null: as single pixels.
+  const RoundedBlocks* blocks = nullptr;
   /// Pixel values from which on the sensor clips, or up to which it does: such pixels spoil an edge.
   std::optional<double> clip_low, clip_high;
   /// The light of each code value, rising, where values have been rounded to them; empty: they have not. They

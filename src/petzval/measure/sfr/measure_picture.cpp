@@ -6,6 +6,7 @@
 #include <petzval/measure/sfr/find_edges.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/missing_target.h>
+#include <petzval/measure/sfr/rounded_blocks.h>
 
 #include <algorithm>
 #include <atomic>
@@ -153,6 +154,9 @@ class Measurement {
     options_.edge_order = request.edge_order;
     options_.clip_low = picture.clip_low, options_.clip_high = picture.clip_high;
     options_.code_levels = picture.code_levels;
+    if (!picture.coefficient_steps.empty() && pattern_of(request, picture).empty())
+      for (const Channel& channel : channels)
+        blocks_.emplace_back(channel.plane, picture.coefficient_steps, picture.code_levels);
     if (!pattern_of(request, picture).empty()) guide_ = smoothed(guide_);
     try {
       found_ = find_edges(guide_);
@@ -222,6 +226,7 @@ class Measurement {
   EdgeMeasurement measure(const Channel& channel, const std::vector<EdgeSample>& samples,
                           const FoundEdge* edge, bool sampled) const {
     SfrOptions options = options_;
+    if (!blocks_.empty()) options.blocks = &blocks_[static_cast<std::size_t>(&channel - channels_.data())];
     if (edge != nullptr) {
       options.start = edge->line();
       if (sampled) {
@@ -296,6 +301,7 @@ class Measurement {
   const std::vector<Channel>& channels_;
   Plane guide_;
   SfrOptions options_;
+  std::vector<RoundedBlocks> blocks_;  ///< of each channel of a JPEG
   FoundEdges found_;
 };
 

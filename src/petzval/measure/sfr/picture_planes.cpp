@@ -79,6 +79,7 @@ PicturePlanes from_jpeg(const std::string& path, PictureTransfer transfer) {
       deinterleaved(jpeg.columns, jpeg.rows, jpeg.channels, jpeg.channels,
                     [&](std::size_t i) { return to_light(jpeg.samples[i] / 255.0, curve.linear); });
   add_codes(picture, 8, curve);
+  picture.coefficient_steps = jpeg.steps;
   return picture;
 }
 

@@ -24,6 +24,8 @@ struct PicturePlanes {
   std::optional<double> clip_low, clip_high;
   /// The light of each of their code values; empty for other formats.
   std::vector<double> code_levels = {};
+  /// Of a JPEG, what the coefficients of blocks are rounded to (RoundedBlocks); empty for other formats.
+  std::vector<int> coefficient_steps = {};
 
   /// Of a mosaic the letters of its two rows, "rggb" and so on; empty for full planes.
   std::string bayer = {};
