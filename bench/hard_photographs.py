@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Errors of `petzval sfr` by cause: a photograph of 100 edges, exact as `petzval target` draws it, made hard in the ways that
 photographs are, each by code of this file that knows nothing of how `sfr` measures. The true MTF50 of every edge is Airy's
-transfer function times the photosite's, and that of the sharpening. `bench/hard_photographs.py build/release/bin/petzval [--json]`"""
+transfer function times the photosite's, and that of the sharpening. `bench/hard_photographs.py build/release/bin/petzval
+[--json] [--quality N]`, of the JPEG pictures, which ImageMagick writes where it is there."""
 
 import json
 import math
