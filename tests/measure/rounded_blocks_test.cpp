@@ -2,6 +2,7 @@
 // Edges in JPEG files, as libjpeg writes them.
 #include <gtest/gtest.h>
 #include <jpeg_bytes.h>
+#include <petzval/base/error.h>
 #include <petzval/colour/display.h>
 #include <petzval/image/formats/jpeg.h>
 #include <petzval/measure/sfr/measure_edge.h>
@@ -74,6 +75,23 @@ TEST(RoundedBlocks, ChangePixelsAsLibjpegDoes) {
     });
     EXPECT_GT(static_cast<double>(alike), 0.5 * static_cast<double>(blocks.size())) << quality;
   }
+}
+
+/// A small grey file with one byte of a segment altered: \param offset  from the segment's marker.
+JpegImage altered_jpeg(char marker, std::size_t offset, char byte) {
+  std::string bytes = test::jpeg_bytes(16, 16, 1, std::vector<std::uint8_t>(256, 90));
+  bytes.at(bytes.find(std::string{'\xff', marker}) + offset) = byte;
+  return parse_jpeg(bytes, "altered.jpg");
+}
+
+// ITU-T T.81, B.2.2: the frame's header names a table from 0 to 3 for each component; B.2.4.1: no step is 0.
+TEST(RoundedBlocks, HaveNoStepsWhereTheFilesTableIsNone) {
+  constexpr char frame = '\xc0', tables = '\xdb';
+  EXPECT_EQ(altered_jpeg(frame, 12, 0).steps, std::vector<int>(64, 1));
+  for (const char number : {'\x04', '\x7f', '\xff'})
+    EXPECT_THROW(altered_jpeg(frame, 12, number), InputError) << int{number};
+  EXPECT_THROW(altered_jpeg(frame, 12, 3), InputError);  // a table that the file does not hold
+  EXPECT_TRUE(altered_jpeg(tables, 5 + 20, 0).steps.empty());
 }
 
 // Blocks of one grey each have one coefficient, which libjpeg's integers hold exactly.

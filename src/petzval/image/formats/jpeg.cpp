@@ -13,6 +13,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <algorithm>
 #include <iterator>
 #include <string_view>
 
@@ -92,9 +93,7 @@ class JpegReader {
     image.columns = static_cast<int>(jpeg_.image_width);
     image.rows = static_cast<int>(jpeg_.image_height);
     image.channels = jpeg_.num_components;
-    const JQUANT_TBL* table = jpeg_.quant_tbl_ptrs[jpeg_.comp_info[0].quant_tbl_no];
-    if (table != nullptr && (jpeg_.jpeg_color_space == JCS_GRAYSCALE || jpeg_.jpeg_color_space == JCS_YCbCr))
-      image.steps.assign(std::begin(table->quantval), std::end(table->quantval));
+    image.steps = coefficient_steps();
     for (const jpeg_marker_struct* m = jpeg_.marker_list; m != nullptr; m = m->next) {
       const int orientation = m->marker == JPEG_APP0 + 1
                                   ? exif_orientation({reinterpret_cast<const char*>(m->data), m->data_length})
@@ -124,6 +123,18 @@ class JpegReader {
   }
 
  private:
+  /// libjpeg does not check the number of the table before it decodes, and never whether steps are 0, which
+  /// T.81 excludes.
+  std::vector<int> coefficient_steps() const {
+    const int number = jpeg_.comp_info[0].quant_tbl_no;
+    if (number < 0 || number >= NUM_QUANT_TBLS) return {};
+    const JQUANT_TBL* table = jpeg_.quant_tbl_ptrs[number];
+    if (table == nullptr || (jpeg_.jpeg_color_space != JCS_GRAYSCALE && jpeg_.jpeg_color_space != JCS_YCbCr))
+      return {};
+    if (std::ranges::count(table->quantval, 0) > 0) return {};
+    return {std::begin(table->quantval), std::end(table->quantval)};
+  }
+
   void start() {
     if (setjmp(error_.escape)) fail();
     jpeg_start_decompress(&jpeg_);
