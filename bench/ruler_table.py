@@ -22,6 +22,12 @@ from hard_photographs import true_mtf50, write_png
 OPTICS = ["--f-number", 8, "--wavelength", 550, "--pixel-pitch", 4.73]
 
 
+def processor_time():
+    """Of all programs that have been run, the time that the system spent for them included [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Bench:
     def __init__(self, program, folder):
         self.program, self.folder = str(pathlib.Path(program).resolve()), folder
@@ -35,15 +41,15 @@ class Bench:
         return np.load(self.folder / name).reshape(size, size)
 
     def edges(self, name, *more):
-        """The measured edges, and the processor time that it took, all threads together [s]."""
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        edges = json.loads(self.run("sfr", name, "--json", *more))["edges"]
-        return edges, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        return json.loads(self.run("sfr", name, "--json", *more))["edges"]
 
     def mtf50(self, picture, *more):
-        """MTF50 [cycles/pixel] and angle [degrees] of every edge of a PNG, and the processor time [s]."""
-        edges, seconds = self.edges(picture, "--transfer", "linear", *more)
-        return [(edge["mtf50_cpp"], edge["angle_deg"]) for edge in edges if edge["mtf50_cpp"]], seconds
+        """MTF50 [cycles/pixel] and angle [degrees] of every edge of a PNG, by the table that is printed, and the processor time [s]."""
+        before = processor_time()
+        table = self.run("sfr", picture, "--transfer", "linear", *more)
+        seconds = processor_time() - before
+        rows = [line.split() for line in table.splitlines()]
+        return [(float(row[3]), float(row[2])) for row in rows if row and row[0].isdigit() and row[3][0].isdigit()], seconds
 
 
 class MtfMapper:
@@ -51,11 +57,11 @@ class MtfMapper:
         self.program, self.folder = str(pathlib.Path(program).resolve()), folder
 
     def mtf50(self, picture, *more):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        before = processor_time()
         values = self.folder / "edge_mtf_values.txt"
         values.write_text("")  # it stops where it finds no edge
         subprocess.run([self.program, picture, ".", "-q", *more], cwd=self.folder, check=False, stdout=subprocess.DEVNULL)
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        seconds = processor_time() - before
         rows = [list(map(float, line.split())) for line in values.read_text().splitlines() if line[:1] not in "#"]
         # Beside the middle of an edge stands a corner near its end.
         return [(row[3], math.degrees(math.atan2(row[5] - row[2], row[4] - row[1]))) for row in rows], seconds
@@ -96,7 +102,7 @@ def nine(bench):
         truths = {}
         for row in csv.DictReader(open(bench.folder / "nine.csv")):
             truths.setdefault(row["edge"], {})[round(float(row["frequency_cpp"]), 2)] = abs(float(row["sfr"]))
-        for edge in bench.edges("nine.npy")[0]:
+        for edge in bench.edges("nine.npy"):
             measured = {round(f, 2): value for f, value in zip(edge["frequencies_cpp"], edge["sfr"]) if 0.02 <= f <= 0.5}
             worst = max(worst, min(max(abs(value - truth[f]) for f, value in measured.items() if f in truth) for truth in truths.values()))
     return worst
@@ -122,7 +128,7 @@ def main(program, mapper=None):
         for across, there in ((3, "0.08 s"), (5, "0.09 s"), (7, "0.14 s"), (20, "")):
             both(f"{4 * across * across} edges of 40 px, processor time", bench.target("t.npy", squares(across, 40, 80), 80 * across), there, time)
         bench.run("image", "checkerboard:10", "--lens", "wide-22mm", "--f-number", 8, "--sensor", "1200x900@20", "-o", "board.npy")
-        edges, seconds = bench.edges("board.npy")
+        edges, seconds = bench.mtf50("board.npy")
         row("a board through wide-22mm, processor time", f"{seconds:.1f} s, {len(edges)} edges")
         for radius, there in ((4000, "0.340"), (1000, "0.335")):
             arced = bench.target("arc.npy", [arc(radius)], 120)[10:110, 10:110]
@@ -143,7 +149,7 @@ def main(program, mapper=None):
         both("the same at SNR 50", near + random.normal(0, 0.02, near.shape), "6.1 %", worst)
         for angle in (15, 30):
             bench.run("target", "--rectangle", f"100x100@{angle}", *OPTICS, "-o", "iso.npy")
-            edges, _ = bench.edges("iso.npy", "--method", "iso")
+            edges = bench.edges("iso.npy", "--method", "iso")
             row(f"--method iso at {angle} degrees (true {true_mtf50(angle):.3f})", f"{edges[0]['mtf50_cpp']:.4f}")
         row("nine pictures of our own making, worst SFR to Nyquist", f"{nine(bench):.1e}", "4.6e-3 to 9.3e-3, another day")
 

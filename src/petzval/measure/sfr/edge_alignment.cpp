@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
+#include <petzval/base/unset_vector.h>
 #include <petzval/measure/sfr/edge_alignment.h>
 
 #include <Eigen/Cholesky>
@@ -11,35 +12,34 @@
 namespace petzval {
 
 EdgeProfile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& line) {
-  std::vector<EdgeFrame::Place> places(samples.size());
+  EdgeProfile profile;
+  profile.points.reserve(samples.size());
   double reach = 0;
   const EdgeFrame frame(line);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    places[i] = frame.at(samples[i].x, samples[i].y);
-    reach = std::max(reach, std::abs(places[i].distance));
+  for (const EdgeSample& sample : samples) {
+    const EdgeFrame::Place place = frame.at(sample.x, sample.y);
+    profile.points.push_back({place.distance, sample.value, place.along, 0});
+    reach = std::max(reach, std::abs(place.distance));
   }
   const int half = static_cast<int>(reach / 2) + 1;
   std::vector<int> count(2 * static_cast<std::size_t>(half) + 1);  // of cells two pixels wide
-  const auto cell = [&](double d) {
-    return static_cast<std::size_t>(static_cast<int>(half + 0.5 + 0.5 * d));
-  };
-  for (const EdgeFrame::Place& place : places) ++count[cell(place.distance)];
+  for (const EdgePoint& point : profile.points)
+    ++count[static_cast<std::size_t>(static_cast<int>(half + 0.5 + 0.5 * point.distance))];
   const auto middle = static_cast<std::size_t>(half);
   const int enough = std::max(4, count[middle] / 4);
   std::size_t first = middle, last = middle;
   while (first > 0 && count[first - 1] >= enough) --first;
   while (last + 1 < count.size() && count[last + 1] >= enough) ++last;
-  EdgeProfile profile;
   profile.low = 2 * (static_cast<double>(first) - half) - 1;
   profile.high = 2 * (static_cast<double>(last) - half) + 1;
-  profile.points.resize(samples.size());
   profile.sample.resize(samples.size());
   std::size_t points = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (places[i].distance >= profile.low && places[i].distance <= profile.high) {
-      profile.points[points] = {places[i].distance, samples[i].value, places[i].along, 0};
-      profile.sample[points++] = i;
-    }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const EdgePoint& point = profile.points[i];
+    if (point.distance < profile.low || point.distance > profile.high) continue;
+    profile.points[points] = point;
+    profile.sample[points++] = i;
+  }
   profile.points.resize(points);
   profile.sample.resize(points);
   profile.variation.assign(points, 0.0);
@@ -106,11 +106,13 @@ template <int terms>
 EdgeAlignment with_free_profile(const EdgeProfile& profile, const EdgeSpreadModel& model, int order,
                                 double noise) {
   AlignmentSums<terms> sums;
-  std::vector<double> derivatives(profile.points.size() * terms);
-  for (std::size_t i = 0; i < profile.points.size(); ++i)
+  UnsetVector<double> derivatives(profile.points.size() * terms);
+  auto at = derivatives.begin();
+  for (std::size_t i = 0; i < profile.points.size(); ++i, at += terms)
     if (std::abs(profile.points[i].distance) <= model.core_px())
-      std::ranges::copy(sums.add(profile, i, order),
-                        derivatives.begin() + static_cast<std::ptrdiff_t>(i * terms));
+      std::ranges::copy(sums.add(profile, i, order), at);
+    else
+      std::fill_n(at, terms, 0.0);
   // What little is left along the pixel grid must not be lost to rounding.
   const Eigen::VectorXd alone = sums.normal.diagonal();
   sums.normal -= model.taken_of<terms>(derivatives);

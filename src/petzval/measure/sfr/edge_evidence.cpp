@@ -54,9 +54,10 @@ struct ResidualBox {
   double sum_at(std::size_t right, std::size_t down) const {
     double sum = 0;
     for (std::size_t row = 0; row + down < rows; ++row) {
-      const double* a = values.data() + row * columns;
-      const double* b = a + down * columns + right;
-      for (std::size_t column = 0; column + right < columns; ++column) sum += a[column] * b[column];
+      using Part = Eigen::Map<const Eigen::VectorXd>;
+      const double* const start = values.data() + row * columns;
+      const auto length = static_cast<Eigen::Index>(columns - right);
+      sum += Part(start, length).dot(Part(start + down * columns + right, length));
     }
     return sum;
   }

@@ -343,7 +343,11 @@ void EdgeFit::take_profile() {
   if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
   model_->evaluate_points(profile_.points, profile_.fitted, profile_.variation);
   expect_light();
-  if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
+  // Of the first, rough profile the data settle nearly all.
+  if (smoothing_ < 0)
+    unknowns_ = model_->unknowns();
+  else if (unknowns_ == 0)
+    unknowns_ = model_->most_unknowns();
   noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
 }
 

@@ -74,7 +74,6 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
 void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> points) {
   if (order >= options_.light_order) return;
   options_.light_order = basis_.light_order = order;
-  options_.smoothing = -1;
   fit(points);
 }
 

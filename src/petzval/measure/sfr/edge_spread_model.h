@@ -48,7 +48,7 @@ class EdgeSpreadModel {
   /// \param memory  of a model that is needed no more. \throws InputError when the points do not determine
   /// the model.
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options, EdgeRows memory = {});
-  /// The same, of the same points, with light of a lower order. The evidence chooses the smoothing.
+  /// The same, of the same points, with light of a lower order and the same smoothing.
   void take_light_to_order(int order, std::span<const EdgePoint> points);
   /// The same, of the same points, with another prior, whose weight the evidence chooses.
   void take_prior(const EdgePriorOptions& prior, std::span<const EdgePoint> points);
@@ -83,6 +83,8 @@ class EdgeSpreadModel {
   std::vector<std::complex<double>> transforms(std::span<const double> frequencies_cpp) const;
   /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.
   double unknowns() const;
+  /// All of them.
+  double most_unknowns() const { return static_cast<double>(coefficients_.size()); }
   double smoothing() const { return options_.smoothing; }
   /// −2 log of the restricted likelihood, but for what it has in common with that of other models of the same
   /// points, knots and noise.

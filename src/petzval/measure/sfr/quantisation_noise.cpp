@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <complex>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -16,8 +18,8 @@ namespace {
 /// The first level above a value, or the last; from the second on. Most often levels are evenly spaced.
 std::span<const double>::iterator next_level(std::span<const double> levels, double value) {
   const double steps = static_cast<double>(levels.size() - 1);
-  const double guess = std::floor((value - levels.front()) / (levels.back() - levels.front()) * steps) + 1;
-  const auto at = static_cast<std::size_t>(std::clamp(guess, 1.0, steps));
+  const double guess = (value - levels.front()) / (levels.back() - levels.front()) * steps;
+  const auto at = static_cast<std::size_t>(std::clamp(guess, 0.0, steps - 1)) + 1;
   if (levels[at - 1] <= value && value < levels[at]) return levels.begin() + static_cast<std::ptrdiff_t>(at);
   return std::upper_bound(levels.begin() + 1, levels.end() - 1, value);
 }
@@ -27,9 +29,24 @@ double first_harmonic(double noise2) {
   return std::exp(-2 * pi * pi * noise2);
 }
 
-/// Cell of each sample, and the sample.
-using ByCell = std::vector<std::pair<long, std::size_t>>;
-constexpr long cells_a_step = 16;
+constexpr int cells_a_step = 16;
+
+/// A sample and the cell that it lies in; by rising cells where numbers rise.
+class SampleInCell {
+ public:
+  SampleInCell(double place, std::size_t sample)
+      : number_(static_cast<std::uint64_t>(std::clamp(place * cells_a_step, -farthest, farthest) + farthest)
+                    << sample_bits |
+                sample) {}
+  int cell() const { return static_cast<int>(number_ >> sample_bits) - static_cast<int>(farthest); }
+  std::size_t sample() const { return number_ & ((std::uint64_t{1} << sample_bits) - 1); }
+  auto operator<=>(const SampleInCell&) const = default;
+
+ private:
+  static constexpr double farthest = 0x1p30;
+  static constexpr int sample_bits = 32;
+  std::uint64_t number_;
+};
 
 /// What cells at the same place in their step have in common.
 struct CellPart {
@@ -47,10 +64,10 @@ std::array<CellPart, cells_a_step> cell_parts() {
 }
 
 /// The most samples in a row of three steps, beyond which errors have nothing in common.
-std::size_t most_together(const ByCell& sorted) {
+std::size_t most_together(std::span<const SampleInCell> sorted) {
   std::size_t most = 0, first = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    while (sorted[first].first + 3 * cells_a_step <= sorted[i].first) ++first;
+    while (sorted[first].cell() + 3 * cells_a_step <= sorted[i].cell()) ++first;
     most = std::max(most, i + 1 - first);
   }
   return most;
@@ -75,7 +92,7 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
   const double scale = pi * pi / 6 / carried;
   // What is left makes less than 1e-11 of the variance of some thousand pixels.
   constexpr double negligible = 1e-7;
-  ByCell by_cell;
+  std::vector<SampleInCell> by_cell;
   std::vector<double> noise2;  // of each sample [steps²]
   by_cell.reserve(values.size()), step_.reserve(values.size()), noise2.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -83,7 +100,7 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
     const double low = *(above - 1), step = *above - low;
     // Beyond the ends the steps go on.
     const double place = static_cast<double>(above - 1 - levels.begin()) + (values[i] - low) / step;
-    by_cell.emplace_back(std::lround(std::floor(place * cells_a_step)), i);
+    by_cell.emplace_back(place, i);
     step_.push_back(step);
     noise2.push_back(std::max(0.0, variance[i] / (step * step) - 1.0 / 12));
   }
@@ -91,11 +108,12 @@ QuantisationNoise::QuantisationNoise(std::span<const double> levels, std::span<c
   std::ranges::sort(by_cell);
   if (!matters(noise2, most_together(by_cell))) return;
   static const std::array<CellPart, cells_a_step> parts = cell_parts();
-  for (const auto& [index, sample] : by_cell) order_.push_back(sample);
+  order_.reserve(by_cell.size());
+  for (const SampleInCell& each : by_cell) order_.push_back(each.sample());
   for (std::size_t first = 0, last = 0; first < by_cell.size(); first = last) {
-    const long index = by_cell[first].first;
+    const int index = by_cell[first].cell();
     double sum = 0;
-    for (last = first; last < by_cell.size() && by_cell[last].first == index; ++last)
+    for (last = first; last < by_cell.size() && by_cell[last].cell() == index; ++last)
       sum += noise2[order_[last]];
     const double mean_noise2 = sum / static_cast<double>(last - first);
     const double left_of_first = first_harmonic(mean_noise2);
