@@ -15,6 +15,8 @@ PATIENCE_S = 600  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id && !page.stale && !page.lastLayout);"""
+DRAWN = """const page = window.petzvalPage;
+return Boolean(page && !page.pending && page.link.isOpen && !page.stale && !page.lastLayout);"""
 # Movements of a pointer reach the page with a frame; and what is shown may change the sizes of other parts, which are drawn anew in the next.
 NEXT_FRAME = "const done = arguments[0]; requestAnimationFrame(() => setTimeout(done));"
 
@@ -118,8 +120,15 @@ class Browser:
 
     def settle(self):
         """Waits until all that was asked for is shown, the finest picture too."""
+        self.wait_for("everything is shown", SETTLED)
+
+    def wait_for_drawing(self):
+        """Waits until the drawing and the facts about the lens are those of the last change; pictures may still come."""
+        self.wait_for("the drawing is shown", DRAWN)
+
+    def wait_for(self, what, script):
         self.driver.execute_async_script(NEXT_FRAME)
-        self.until("everything is shown", lambda: self.run(SETTLED))
+        self.until(what, lambda: self.run(script))
         self.driver.execute_async_script(NEXT_FRAME)
 
     def session(self):

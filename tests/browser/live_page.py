@@ -37,7 +37,10 @@ class LivePage(unittest.TestCase):
     def fresh(self):
         """As if the page had never been open."""
         if self.browser.driver.current_url.startswith("http"):
-            self.browser.run("sessionStorage.clear(); localStorage.clear()")
+            # A page that has not kept its session yet does it when it is left.
+            self.browser.run("""const page = window.petzvalPage;
+                if (page) { clearTimeout(page.keeping); page.keeping = undefined; }
+                sessionStorage.clear(); localStorage.clear();""")
         self.browser.driver.get("about:blank")
         self.browser.open(self.server.url)
 

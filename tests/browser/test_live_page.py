@@ -159,7 +159,7 @@ class Controls(LivePage):
                        "session.lens.fields.values[2] = 60", "session.lens.surfaces.push({...session.lens.surfaces[2], radius_mm: 80, stop: false, thickness_mm: 60})"]:
             with self.subTest(change):
                 self.browser.run(f"window.petzvalPage.alterLens(() => {{ const session = window.petzvalPage.session; {change} }}, '')")
-                self.browser.settle()
+                self.browser.wait_for_drawing()
                 updated, anew = self.browser.run(both)
                 self.assertEqual(updated, anew)
         self.assertIn("no ray", self.browser.text(".layout-box .legend"))

@@ -133,6 +133,12 @@ bool EdgeFit::quiet() const {
   return noise_ < share * model_->step();
 }
 
+/// What is left of samples that finer splines would not take for noise.
+bool EdgeFit::without_noise() const {
+  constexpr double share = 1e-4;
+  return noise_ < share * model_->step();
+}
+
 /// How far along the edge samples may lie that a blur does not reach from a corner.
 double EdgeFit::clear_of_corners() const {
   double farthest = INFINITY;
@@ -248,7 +254,8 @@ void EdgeFit::settle_in_rows(const SfrOptions& options) {
 
 std::vector<EdgeFit::Variant> EdgeFit::variants() const {
   std::vector<Variant> result = near_corners_;
-  if (!quiet() && clear_of_corners() >= 1) return result;
+  constexpr double much_noise = 3e-3;  // of the step, in which what a halo adds from afar is lost
+  if (noise_ > much_noise * model_->step() && clear_of_corners() >= 1) return result;
   for (const double most_along : {0.4, 0.6, 0.8, 1.0}) {
     std::vector<EdgePoint> inner;
     std::ranges::copy_if(profile_.points, std::back_inserter(inner), [&](const EdgePoint& point) {
@@ -256,7 +263,7 @@ std::vector<EdgeFit::Variant> EdgeFit::variants() const {
     });
     if (most_along < 1 && !close_enough(inner, profile_.points)) continue;
     EdgeSpreadOptions options = model_->options();
-    if (quiet()) {
+    if (without_noise()) {
       options.core_px *= 0.85;
       if (!in_rows_) options.knot_px *= 0.8;
       options.prior.noise = noise_, options.smoothing = 0;

@@ -41,8 +41,11 @@ class EdgeFit {
     double corners_left = 0;  ///< of what corners add to the profile of all samples, the part that these have
   };
   std::vector<Variant> variants() const;
+  /// In proportion to what corners add to the profile; 0: none are known.
+  double added_by_corners() const { return corners_.empty() ? 0 : added_by_corners(profile_.points); }
   double noise() const { return noise_; }
-  bool quiet() const;
+  /// Whether there is so little that finer splines fit as well.
+  bool without_noise() const;
 
   const EdgeLine& line() const { return line_; }
   const EdgeProfile& profile() const { return profile_; }
@@ -53,6 +56,7 @@ class EdgeFit {
   double light_variation() const { return light_variation_; }
 
  private:
+  bool quiet() const;
   void find_missing(const std::function<double(double, double)>& missing_target);
   void place_samples();
   void keep_clear_of_corners();

@@ -7,6 +7,7 @@
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/measure/sfr/sample_comb.h>
+#include <petzval/measure/sfr/stated_deviations.h>
 
 #include <algorithm>
 #include <cmath>
@@ -219,7 +220,7 @@ std::vector<double> changes_by_recording(const EdgeFit& fit, const std::vector<E
   return result;
 }
 
-/// What |transform| may be off by, for all reasons together.
+/// What |transform| may be off by.
 class Uncertainty {
  public:
   Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise)
@@ -228,42 +229,36 @@ class Uncertainty {
     const double reach = std::min(-fit.profile().low, fit.profile().high);
     tail_ = extrapolated * std::abs(fit.model().tail_px()) / reach;
   }
-  /// \param transforms  of the model, at the frequencies.
-  std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp,
-                                const std::vector<std::complex<double>>& transforms) const {
-    std::vector<double> deviations = noise_.of_moduli(frequencies_cpp, transforms);
-    const std::vector<double> differences = from_variants(frequencies_cpp, transforms, deviations);
-    for (std::size_t i = 0; i < deviations.size(); ++i) {
+  /// Appends what there is at these frequencies. \param transforms  of the model there.
+  void add_moduli(const std::vector<double>& frequencies_cpp,
+                  const std::vector<std::complex<double>>& transforms, DeviationParts& parts) const {
+    const std::vector<double> noise = noise_.of_moduli(frequencies_cpp, transforms);
+    const std::size_t before = parts.of_samples.size(), count = frequencies_cpp.size();
+    for (std::size_t i = 0; i < count; ++i) {
       const double f = frequencies_cpp[i];
       constexpr double all_of_it_cpp = 0.02;
-      const double model = std::hypot(differences[i], tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
-      deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
+      const double tail = tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp);
+      parts.of_samples.push_back(
+          std::hypot(noise[i], tail, alias_deviation(fit_.model(), fit_.comb_px(), f)));
     }
-    return deviations;
-  }
-
- private:
-  /// Differences from the variants, beyond what noise alone makes of those from a part of the samples.
-  std::vector<double> from_variants(const std::vector<double>& frequencies_cpp,
-                                    const std::vector<std::complex<double>>& transforms,
-                                    const std::vector<double>& noise) const {
-    constexpr double plain = 8;  // three standard deviations
-    const double least = fit_.quiet() ? 0 : plain;
-    std::vector<double> squares(frequencies_cpp.size());
+    parts.model_square.resize(before + count), parts.square_variance.resize(before + count);
     for (const EdgeFit::Variant& variant : variants_) {
       const std::vector<std::complex<double>> others = variant.model.transforms(frequencies_cpp);
       const double told = std::max(0.1, std::abs(1 - variant.corners_left));  // of what corners add
-      for (std::size_t i = 0; i < others.size(); ++i) {
-        const double difference = std::abs(others[i]) - std::abs(transforms[i]);
-        const double of_noise = noise[i] * noise[i] * std::abs(1 / variant.share - 1);
-        const double shown = difference * difference - of_noise;
-        if (shown > least * of_noise) squares[i] += shown / (told * told);
+      for (std::size_t i = 0; i < count; ++i) {
+        const double difference = (std::abs(others[i]) - std::abs(transforms[i])) / told;
+        const double of_noise = std::abs(1 / variant.share - 1) * noise[i] * noise[i] / (told * told);
+        parts.model_square[before + i] += difference * difference - of_noise;
+        parts.square_variance[before + i] += 2 * of_noise * of_noise;
       }
     }
-    for (double& square : squares) square = std::sqrt(square);
-    return squares;
+  }
+  /// Whether a comparison of profiles tells what corners add.
+  bool tells_of_corners() const {
+    return std::ranges::any_of(variants_, [](const EdgeFit::Variant& v) { return v.corners_left > 0; });
   }
 
+ private:
   const EdgeFit& fit_;
   const EdgeSpreadModel::Deviation& noise_;
   std::vector<EdgeFit::Variant> variants_;
@@ -290,17 +285,17 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Un
   std::vector<double> passed;
   for (const MtfLevel& level : result.mtf)
     if (std::isfinite(level.frequency_cpp)) passed.push_back(level.frequency_cpp);
-  const std::vector<double> deviations = uncertainty.of_moduli(passed, model.transforms(passed));
-  auto of_modulus = deviations.begin();
-  for (MtfLevel& level : result.mtf) {
+  std::size_t part = result.parts.of_samples.size();
+  uncertainty.add_moduli(passed, model.transforms(passed), result.parts);
+  for (const MtfLevel& level : result.mtf) {
     if (!std::isfinite(level.frequency_cpp)) continue;
-    const double spread = *of_modulus++;
+    const double spread = result.parts.of_samples[part++];
     // Over as much as the deviation covers: at a point the slope is noisy, too.
     const double reach = std::clamp(2 * spread, 1e-4, 0.8 * std::min(level.level, 1 - level.level));
     const double before = level_between(level.level + reach, contrast, step);
     const double after = level_between(level.level - reach, contrast, step);
     const double run = std::isfinite(after) ? (after - before) / 2 : level.frequency_cpp - before;
-    level.deviation_cpp = spread * run / reach;
+    result.parts.level_run.push_back(run / reach);
   }
 }
 
@@ -349,12 +344,10 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
   const Uncertainty uncertainty(fit, deviation);
   const std::vector<std::complex<double>> transforms = model.transforms(result.frequencies_cpp);
-  result.sfr_deviation = uncertainty.of_moduli(result.frequencies_cpp, transforms);
-  for (std::size_t i = 0; i < transforms.size(); ++i) {
-    const double f = result.frequencies_cpp[i];
-    result.sfr.push_back(std::abs(transforms[i]));
-    result.phase_rad.push_back(std::arg(transforms[i]));
-    result.sfr_deviation[i] = std::hypot(result.sfr_deviation[i], alias_deviation(model, fit.comb_px(), f));
+  uncertainty.add_moduli(result.frequencies_cpp, transforms, result.parts);
+  for (const std::complex<double>& value : transforms) {
+    result.sfr.push_back(std::abs(value));
+    result.phase_rad.push_back(std::arg(value));
   }
   // With rows half a pixel apart the alias of Nyquist's frequency lies beyond what lenses and pixels
   // pass.
@@ -370,6 +363,10 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   if (std::ranges::all_of(levels, [](double f) { return std::isfinite(f); }))
     result.level_correlations = deviation.correlations(levels);
   fill_curves(result, model, profile);
+  result.parts.corners = uncertainty.tells_of_corners() ? fit.added_by_corners() : 0;
+  result.parts.without_noise = fit.without_noise();
+  EdgeMeasurement* const alone = &result;
+  state_deviations({&alone, 1});
   return result;
 }
 

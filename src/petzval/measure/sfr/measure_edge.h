@@ -51,6 +51,19 @@ struct MtfLevel {
   double deviation_cpp = 0;  ///< standard deviation from noise, rounding and what the model cannot follow
 };
 
+/// What the deviations of an edge are made of: at each frequency of its SFR, then at each level that it
+/// passes.
+struct DeviationParts {
+  std::vector<double> of_samples;  ///< noise, rounding and what is not known of the tail
+  /// Squares of what corners, and the choice of splines, change of the contrast: of how much the profile of a
+  /// part of the samples differs, less what noise makes of that on average. And their variance by noise.
+  std::vector<double> model_square, square_variance;
+  std::vector<double>
+      level_run;       ///< by how much a level's frequency changes with the contrast [cycles/pixel]
+  double corners = 0;  ///< in proportion to what corners add to the profile; 0: none are known
+  bool without_noise = false;
+};
+
 struct EdgeMeasurement {
   EdgeLine line;
   double dark = 0, bright = 0;              ///< levels far away, the tail extrapolated
@@ -66,6 +79,7 @@ struct EdgeMeasurement {
   /// How the deviations of sfr at MTF80, MTF50 and MTF20 hang together: correlations of the first and second,
   /// first and third, second and third; 0 where a level is not reached.
   std::array<double, 3> level_correlations{};
+  DeviationParts parts;                       ///< of the deviations
   std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
   /// What the light of either side changes by over the samples, over the step; 0 if it is even.
   double light_variation = 0;

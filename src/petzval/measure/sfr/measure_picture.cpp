@@ -7,6 +7,7 @@
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/missing_target.h>
 #include <petzval/measure/sfr/rounded_blocks.h>
+#include <petzval/measure/sfr/stated_deviations.h>
 
 #include <algorithm>
 #include <atomic>
@@ -192,6 +193,12 @@ class Measurement {
     std::vector<MeasuredEdge> edges;
     for (auto& result : results) std::move(result.begin(), result.end(), std::back_inserter(edges));
     if (edges.empty()) throw InputError(name_, faults.empty() ? "no edge" : faults.front());
+    for (const Channel& channel : channels_) {
+      std::vector<EdgeMeasurement*> of_channel;
+      for (MeasuredEdge& edge : edges)
+        if (edge.channel == channel.name) of_channel.push_back(&edge.exact);
+      state_deviations(of_channel);
+    }
     if (request_.chart_mm) place_on_chart(edges);
     std::vector<LeftOut> left_out;
     for (std::size_t i = 0; i < jobs.size(); ++i)
