@@ -14,8 +14,9 @@ namespace petzval {
 
 namespace {
 
-/// How much larger an error may be than spectra along rows and columns say: waves aslant are wrong in both
-/// directions at once, in phase, so that they have up to twice the power of the two.
+/// How much larger an error may be than spectra along rows and columns say. They are means over where edges
+/// lie on the cells, but edges may all lie alike: those of a checkerboard, which has hardly a wave aslant,
+/// and those that meet in the middle of a star need all of this.
 constexpr double caution_of_cells = 1.41;
 /// What the blur may take of a tolerance, and cells at least and at most, as the table leaves it to them.
 constexpr double of_blur = 0.5, least_of_cells = 0.5, most_of_cells = 0.75;

@@ -26,7 +26,8 @@ class SamplingErrors {
   std::vector<PassedWaves> power_;  ///< by DetailBands, of all zones: times the power of the detail
 };
 
-/// How many cells a pixel gets, and the SamplingErrors that they leave, with a caution for waves aslant.
+/// How many cells a pixel gets, and the SamplingErrors that they leave, with a caution for edges that lie
+/// alike.
 struct CellChoice {
   int cells = 1;
   int parts = 1;         ///< of a cell, along a side
