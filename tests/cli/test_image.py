@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval image: from a scene and a lens to irradiance and picture, and what it refuses."""
 
+import math
 import struct
 import unittest
 
@@ -44,6 +45,16 @@ class Image(ProgramTest):
         # The two tables end at slightly different heights, and so have their fields at different places.
         difference = sum(abs(a - b) for a, b in zip(lens, table)) / sum(lens)
         self.assertLess(difference, 0.02)
+
+    def test_pictures_of_lights_in_darkness_keep_the_tolerance(self):
+        """Beside the same with 12 cells a pixel, and a tenth of the tolerance or less."""
+        for scene, lens, pitch_um, tolerance in (("stars", "dgauss-50mm", 54, 1e-2), ("points", "wide-22mm", 54, 1e-2), ("points", "edmund-54852", 7.5, 1e-3)):
+            with self.subTest(scene=scene, lens=lens, tolerance=tolerance):
+                common = ["image", scene, "--lens", lens, "--sensor", f"320x240@{pitch_um}", "--wavelengths", 550]
+                self.assert_succeeds(*common, "--tolerance", tolerance, "-o", "asked.npy")
+                self.assert_succeeds(*common, "--supersample", 12, "--tolerance", 1e-4, "-o", "finer.npy")
+                (_, asked), (_, finer) = (read_npy(self.folder / name) for name in ("asked.npy", "finer.npy"))
+                self.assertLess(math.dist(asked, finer), tolerance * math.hypot(*finer))
 
     def test_a_wall_far_away_is_one_at_infinity(self):
         def wall(lens, distance_m):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/band_blur.h>
 #include <petzval/imaging/exact_blur.h>
+#include <petzval/imaging/spread_wanted.h>
 
 #include <algorithm>
 #include <array>
@@ -47,12 +48,11 @@ void BandBlur::choose(const BandPlan& band, double wavelength_nm, const SensorGe
   if (options_.method == BlurMethod::product) choose_product(band.map.look(), hint);
 }
 
-/// A plan's error is estimated for noise as strong as its mean, with a caution that covers what scenes have
-/// beyond. Of lights in darkness it does not: the factor by which errors are larger for noise of the scene's
-/// contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels, where the lens lets light fall.
+/// A plan's error is estimated for noise as strong as its mean. The factor by which errors are larger for
+/// noise of the scene's contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels, where the lens lets light fall.
 double BandBlur::harder_than_noise(const SceneLook& look) const {
-  constexpr double covered = 2.5;
-  if (!(contrast_ > covered) || options_.is_preview()) return 1;
+  const double contrast = contrast_of_noise(contrast_);
+  if (contrast == 1) return 1;
   const double lit_mm = std::min(half_diagonal_mm(grown(grid_, -margin_)), look.last_height_mm());
   double squares = 0, lights = 0;
   constexpr std::array<double, 3> heights{0, 0.5, 0.9};  // of what is lit
@@ -63,7 +63,7 @@ double BandBlur::harder_than_noise(const SceneLook& look) const {
       squares += light * weight * weight;
   }
   if (lights > 0) squares /= lights;
-  return std::sqrt((1 + squares) / (1 / (contrast_ * contrast_) + squares));
+  return std::sqrt((1 + squares) / (1 / (contrast * contrast) + squares));
 }
 
 void BandBlur::choose_product(const SceneLook& look, const std::optional<ProductPlan>& hint) {

@@ -92,7 +92,8 @@ FieldMisfit field_misfit(const LensDataTable& table, std::size_t wavelength,
         std::abs(by_others.moments().mean[1] - by_own.moments().mean[1]) * own[i].cell_um * mm_per_um;
     const double brighter = said[i].table.g_source_sr[middle] / on_axis - light;
     misfit.parts.push_back(
-        {std::hypot(light * kernel_difference(by_others, by_own), brighter), light * moved_mm});
+        {std::hypot(light * kernel_difference(by_others, by_own, wanted.contrast), brighter),
+         light * moved_mm});
   }
   return misfit;
 }

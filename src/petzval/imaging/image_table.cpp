@@ -67,7 +67,7 @@ enum class Psfs { where_chosen, at_all_fields };
 LensDataTable table_by_height(const Lens& lens, const TableOptions& asked, const SpreadWanted& wanted,
                               Psfs psfs, const ProgressCallback& progress) {
   TableOptions options = asked;
-  if (wanted.of_a_preview() && psfs == Psfs::where_chosen)
+  if (wanted.of_a_preview() && wanted.contrast == 1 && psfs == Psfs::where_chosen)
     options.coarse = {wanted.cell_um, wanted.tolerance};
   if (options.field_count < fewest_to_choose) return build_lens_data_table(lens, options, progress);
   constexpr int most_fields = 1000;  // TableOptions::validate()

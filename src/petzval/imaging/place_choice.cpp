@@ -149,7 +149,7 @@ class PlaceChoice {
       const Kernel said = kernels.kernel_at(frame().x_mm[place % columns], frame().y_mm[place / columns]);
       const LensDataTable one = spread_about(place);
       const Kernel own = kernels_of(one).kernel_at(0, 0);
-      squares[i] = meshes[i].share * std::pow(kernel_difference(said, own), 2);
+      squares[i] = meshes[i].share * std::pow(kernel_difference(said, own, wanted_.contrast), 2);
       const auto said_at = said.moments().mean, own_at = own.moments().mean;
       const double mm =
           std::hypot(said_at[0] - own_at[0], said_at[1] - own_at[1]) * wanted_.cell_um * mm_per_um;

@@ -257,6 +257,13 @@ double variance_of_neighbours(const Scene& scene, int band) {
 
 }  // namespace
 
+double contrast_of_samples(const Scene& scene, int band) {
+  double mean = 0;
+  for (const float light : scene.band(band)) mean += double(light);
+  mean /= static_cast<double>(scene.band(band).size());
+  return mean > 0 ? std::sqrt(variance_of_neighbours(scene, band)) / mean : 0;
+}
+
 SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor) {
   SceneDetail detail;
   detail.power.fill(std::vector<double>(DetailBands::count));

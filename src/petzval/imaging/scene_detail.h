@@ -30,6 +30,10 @@ struct SceneDetail {
 /// (P. D. Welch, The use of fast Fourier transform for the estimation of power spectra, 1967.)
 SceneDetail detail_of(const Scene& scene, int band, double samples_per_pixel, const SensorGeometry& sensor);
 
+/// What neighbouring samples of a band differ by, as noise of the same differences does
+/// (variance_of_neighbours), over the mean of the band; 0 of darkness.
+double contrast_of_samples(const Scene& scene, int band);
+
 /// The detail of one scene for one image after another: what was looked at last is kept. Each lens shows the
 /// scene at a scale of its own, so scales are rounded, here and wherever a detail is to be the same for a
 /// single image.

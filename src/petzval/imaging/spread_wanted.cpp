@@ -11,7 +11,12 @@ bool SpreadWanted::of_a_preview() const {
   return tolerance >= ImagingOptions::of_a_preview;
 }
 
-double kernel_difference(const Kernel& few, const Kernel& more) {
+double contrast_of_noise(double contrast) {
+  constexpr double covered = 2.5;
+  return contrast > covered ? contrast : 1;
+}
+
+double kernel_difference(const Kernel& few, const Kernel& more, double contrast) {
   const int radius = std::max(few.radius, more.radius);
   const auto weight = [](const Kernel& kernel, int row, int column) {
     const bool inside = std::abs(row) <= kernel.radius && std::abs(column) <= kernel.radius;
@@ -24,7 +29,7 @@ double kernel_difference(const Kernel& few, const Kernel& more) {
       squares += std::pow(weight(few, row, column) - here, 2);
       light += here * here;
     }
-  return std::sqrt(squares / (1 + light));
+  return std::sqrt(squares / (1 / (contrast * contrast) + light));
 }
 
 }  // namespace petzval

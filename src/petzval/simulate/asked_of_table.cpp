@@ -3,6 +3,7 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/field_error.h>
 #include <petzval/imaging/field_of_view.h>
+#include <petzval/imaging/scene_detail.h>
 #include <petzval/simulate/asked_of_table.h>
 
 #include <algorithm>
@@ -26,6 +27,20 @@ SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um) {
           options.imaging.tail_pixels * pitch_um};
 }
 
+SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um, const Scene& scene,
+                           const FirstOrder& lens) {
+  SpreadWanted wanted = spread_wanted(options, pitch_um);
+  try {
+    const double sample_um = natural_pitch_um(scene, lens);
+    const double contrast =
+        contrast_of_noise(contrast_of_samples(scene, scene.bands() / 2) * sample_um / wanted.cell_um);
+    wanted.contrast = std::exp2(std::ceil(std::log2(contrast)));  // one table for scenes that are much alike
+  } catch (const InputError&) {
+    // How large samples are is not known.
+  }
+  return wanted;
+}
+
 bool mixes_psfs(const ImageOptions& options) {
   return options.imaging.method == BlurMethod::product &&
          options.imaging.interpolation == PsfInterpolation::psf;
@@ -41,7 +56,7 @@ double stored_table_error(const TableCamera& camera, const Scene& scene, const I
     if (!(pitch_um > 0)) return 0;  // tables of other programs may not say how wide a scene is on the sensor
     return error_between_fields(
         table, camera.sensor ? half_frame_mm(camera.sensor->geometry) : std::array{side_mm, side_mm},
-        spread_wanted(options, pitch_um));
+        spread_wanted(options, pitch_um, scene, table.first_order));
   } catch (const InputError&) {
     return 0;  // there is no pitch, or kernels would have too many cells; forming the image says so if it
                // cannot do with fewer

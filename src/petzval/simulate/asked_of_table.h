@@ -20,6 +20,9 @@ std::array<double, 2> half_frame_mm(const SensorGeometry& frame);
 
 /// How closely an image asks a table to say how light spreads.
 SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um);
+/// The same, of this scene by this lens.
+SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um, const Scene& scene,
+                           const FirstOrder& lens);
 
 /// Whether the image is formed from mixtures of the PSFs of neighbouring fields.
 bool mixes_psfs(const ImageOptions& options);

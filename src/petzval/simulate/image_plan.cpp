@@ -224,10 +224,10 @@ LensDataTable facts_alone(const Lens& lens) {
 }
 
 /// All that a table is made of; empty for coatings, which have no text.
-std::string lens_key(const Lens& lens, const TableOptions& options, double pitch_um) {
+std::string lens_key(const Lens& lens, const TableOptions& options, double pitch_um, double contrast = 1) {
   const Losses& losses = options.losses;
   if (losses.air_glass || !losses.surfaces.empty()) return {};
-  std::string key = fmt::format("{} {} {} {} {} {} {} {}", pitch_um, options.max_image_height_mm,
+  std::string key = fmt::format("{} {} {} {} {} {} {} {} {}", pitch_um, contrast, options.max_image_height_mm,
                                 options.field_count, options.frame_places, static_cast<int>(options.clip),
                                 losses.fresnel, losses.absorption, lens_to_json(lens));
   for (const double nm : options.wavelengths_nm) key += fmt::format(" {}", nm);
@@ -298,17 +298,17 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
             {},
             std::move(options),
             in_use(focused, table, camera)};
+  const bool says_spread = mixes_psfs(options) && detail != TableDetail::outline;
+  SpreadWanted wanted;
+  if (says_spread) wanted = spread_wanted(options, pitch_um, scene, first_order(focused));
   const auto build = [&] {
     return result_within(context, [&](const ProgressCallback& progress) {
-      if (!mixes_psfs(options) || detail == TableDetail::outline)
-        return build_lens_data_table(focused, table, progress);
-      const double pitch_um =
-          camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, first_order(focused));
-      return build_image_table(focused, table, spread_wanted(options, pitch_um), progress);
+      return says_spread ? build_image_table(focused, table, wanted, progress)
+                         : build_lens_data_table(focused, table, progress);
     });
   };
   LensDataTable built =
-      memory != nullptr ? memory->table(lens_key(focused, table, pitch_um), build) : build();
+      memory != nullptr ? memory->table(lens_key(focused, table, pitch_um, wanted.contrast), build) : build();
   return {std::move(scene), std::move(built), {}, {}, std::move(options), in_use(focused, table, camera)};
 }
 
