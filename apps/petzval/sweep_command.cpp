@@ -272,77 +272,88 @@ SweepFrames frames_of(const CLI::App& app, const SweepCommand& options, const st
   return SweepFrames(std::move(commands));
 }
 
-void sweep(const CLI::App& program, const SweepCommand& options, const Shared& shared) {
-  const CLI::App& app = swept_app(program, options);
+/// What is to be made, and how it is judged.
+struct PlannedSweep {
+  std::vector<SweptParameter> parameters;
+  std::vector<SweepPoint> points;
+  std::vector<Criterion> criteria;
+};
+
+/// \throws InputError for whatever can be known to be wrong before the first point.
+PlannedSweep planned_sweep(const CLI::App& program, const SweepCommand& options, const Shared& shared) {
   std::vector<std::string> words{options.command};
   words.insert(words.end(), options.words.begin(), options.words.end());
   refuse_unknown_words(program, words);
-  std::vector<SweptParameter> parameters;
+  PlannedSweep plan;
   std::vector<std::string> notes;
-  for (const std::string& text : options.vary) parameters.push_back(parse_swept(text, notes, options.frames));
+  for (const std::string& text : options.vary)
+    plan.parameters.push_back(parse_swept(text, notes, options.frames));
   if (!options.clip.empty()) require_clip_maker(options.clip);
-  if (parameters.empty() && options.points.empty())
+  if (plan.parameters.empty() && options.points.empty())
     throw InputError("what is varied? --vary f-number=2,4,8 or --points FILE.csv would be right");
-  const std::vector<SweepPoint> points = points_of(options, parameters);
-  check_plot(options, parameters);
-  std::vector<Criterion> criteria;
-  for (const std::string& text : options.accept) criteria.push_back(parse_criterion(text));
+  plan.points = points_of(options, plan.parameters);
+  check_plot(options, plan.parameters);
+  for (const std::string& text : options.accept) plan.criteria.push_back(parse_criterion(text));
   check_corner_columns(options);
-  check_command_lines(app, options, parameters, shared);
+  check_command_lines(swept_app(program, options), options, plan.parameters, shared);
   for (const std::string& text : notes) note(shared, text);
-  SweepFolder folder(options.folder, planned_files(options, points.size()));
-  check_inputs(options, parameters, folder);
+  return plan;
+}
 
-  const std::vector<std::string> angles = scene_angles(app, options, points, folder, shared);
+struct FinishedPoints {
   std::vector<PointResult> results;
+  std::set<std::string> written;  ///< names of files
+  std::size_t failed = 0;
+};
+
+/// Runs the command at each point. \throws InputError if it refused every one.
+FinishedPoints run_points(const CLI::App& app, const SweepCommand& options,
+                          const std::vector<SweepPoint>& points, SweepFolder& folder, const Shared& shared) {
+  const std::vector<std::string> angles = scene_angles(app, options, points, folder, shared);
   RenderSession renders;
   Shared with_session = shared;
   with_session.renders = &renders;
   std::optional<SweepFrames> frames;
   if (options.share_paths) frames = frames_of(app, options, points, angles, shared);
   if (frames) with_session.frames = &*frames;
-  std::set<std::string> written;
+  FinishedPoints all;
   std::vector<std::string> held;
-  std::size_t failed = 0;
   for (const SweepPoint& point : points) {
-    const std::size_t index = results.size();
+    const std::size_t index = all.results.size();
     try {
-      results.push_back(run_point(app, options, point, index, angles[index], with_session));
+      all.results.push_back(run_point(app, options, point, index, angles[index], with_session));
     } catch (const Cancelled&) {
-      if (written.empty()) throw;
+      if (all.written.empty()) throw;
       throw Interrupted(fmt::format("stopped after {} of {} points; the same command goes on with the rest",
                                     index, points.size()));
     }
-    const PointResult& result = results.back();
+    const PointResult& result = all.results.back();
     check_scene_angle(result, angles[index], shared);
     if (!result.done) {
-      ++failed;
+      ++all.failed;
       held.push_back(fmt::format("{}: {}", label_of(point), result.error));
     }
     // As long as every point was refused, their messages wait: if all are, one error says it.
-    if (result.done || result.exit_code != refused || failed < results.size()) {
+    if (result.done || result.exit_code != refused || all.failed < all.results.size()) {
       for (const std::string& text : held) note(shared, text);
       held.clear();
     }
     if (!result.done) continue;
-    if (written.empty()) check_quantities(options, results, folder);
+    if (all.written.empty()) check_quantities(options, all.results, folder);
     folder.keep();
-    written.insert(name_of_point(results.size() - 1) + ".json");
+    all.written.insert(name_of_point(index) + ".json");
     for (const std::string& path : result.outputs)
-      written.insert(std::filesystem::path(path).filename().string());
+      all.written.insert(std::filesystem::path(path).filename().string());
   }
-  refuse_if_all_are_refused(results);
-  const Json rows = rows_of(results);
-  const std::vector<JudgedPoint> judged =
-      criteria.empty() ? std::vector<JudgedPoint>() : judged_points(results, criteria);
-  written.merge(write_summary(options, results, parameters, rows, judged, criteria, shared));
-  folder.finish(rows, written);
-  if (!options.clip.empty() && failed == 0)
-    write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
-  if (failed == points.size())
-    throw Failure(fmt::format("every point failed, the last one: {}", results.back().error));
+  refuse_if_all_are_refused(all.results);
+  return all;
+}
+
+void print_sweep(const SweepCommand& options, const FinishedPoints& all, const Json& rows,
+                 const std::vector<JudgedPoint>& judged, const std::vector<Criterion>& criteria,
+                 const Shared& shared) {
   if (shared.json) {
-    Json json = {{"points", points.size()}, {"failed", failed}, {"rows", rows}};
+    Json json = {{"points", all.results.size()}, {"failed", all.failed}, {"rows", rows}};
     if (!judged.empty()) {
       const Yield yield = yield_of(good_points(judged), judged.size());
       json["yield"] = yield.share;
@@ -351,10 +362,28 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
     }
     return print_json(json);
   }
-  if (!shared.quiet)
-    fmt::print("{} points, {} failed: {}/index.html, sweep.csv, sweep.json{}\n", points.size(), failed,
-               options.folder, written.contains("contact-sheet.png") ? ", contact-sheet.png" : "");
-  if (!shared.quiet && !judged.empty()) fmt::print("{}\n", yield_text(judged, criteria));
+  if (shared.quiet) return;
+  fmt::print("{} points, {} failed: {}/index.html, sweep.csv, sweep.json{}\n", all.results.size(), all.failed,
+             options.folder, all.written.contains("contact-sheet.png") ? ", contact-sheet.png" : "");
+  if (!judged.empty()) fmt::print("{}\n", yield_text(judged, criteria));
+}
+
+void sweep(const CLI::App& program, const SweepCommand& options, const Shared& shared) {
+  const PlannedSweep plan = planned_sweep(program, options, shared);
+  SweepFolder folder(options.folder, planned_files(options, plan.points.size()));
+  check_inputs(options, plan.parameters, folder);
+  FinishedPoints all = run_points(swept_app(program, options), options, plan.points, folder, shared);
+  const Json rows = rows_of(all.results);
+  const std::vector<JudgedPoint> judged =
+      plan.criteria.empty() ? std::vector<JudgedPoint>() : judged_points(all.results, plan.criteria);
+  all.written.merge(
+      write_summary(options, all.results, plan.parameters, rows, judged, plan.criteria, shared));
+  folder.finish(rows, all.written);
+  if (!options.clip.empty() && all.failed == 0)
+    write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
+  if (all.failed == plan.points.size())
+    throw Failure(fmt::format("every point failed, the last one: {}", all.results.back().error));
+  print_sweep(options, all, rows, judged, plan.criteria, shared);
 }
 
 void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::string& name,
