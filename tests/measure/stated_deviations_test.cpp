@@ -76,7 +76,7 @@ TEST(StatedDeviations, AreNoLargerWhereCornersAddNothing) {
 TEST(StatedDeviations, AreThoseOfEdgesOfTheSameBlur) {
   std::mt19937 random(3);
   DrawnEdges drawn;
-  drawn.add(400, 6, 8e-3, random);
+  drawn.add(400, 6, 2.5e-3, random);
   drawn.add(400, 2.5, 0, random);
   drawn.state_together();
   EXPECT_GT(drawn.over_stated(400), 0.8);
