@@ -213,10 +213,13 @@ void EdgeFit::fit_to_shapes() {
   if (overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step())) return;
   const double smooth = model_->criterion();
   constexpr int rounds = 2;
+  constexpr double alike = 0.02;  // a tenth of how well shapes expect the width to be known
+  double before = 0;
   for (int round = 0; round < rounds; ++round) {
     const double mtf50 = mtf50_cpp(*model_);
-    if (!EdgeShapes::possible(mtf50, line_.normal_rad)) break;
+    if (!EdgeShapes::possible(mtf50, line_.normal_rad) || std::abs(mtf50 - before) < alike * mtf50) break;
     take_shapes(EdgeShapes(mtf50, line_.normal_rad));
+    before = mtf50;
   }
   if (model_->options().prior.shapes && model_->criterion() >= smooth) take_shapes({});
 }
