@@ -32,6 +32,11 @@ struct DrawnEdges {
       errors.push_back(added + of_samples * normal(random));
     }
   }
+  /// Of the edges from `first` on, as the ruler promises it.
+  void expect_errors_as_stated(std::size_t first = 0) const {
+    EXPECT_GT(over_stated(first), 0.8);
+    EXPECT_LT(over_stated(first), 1.25);
+  }
   /// Root mean square of the errors over what is stated of the edges from `first` on.
   double over_stated(std::size_t first = 0) const {
     double sum = 0;
@@ -60,8 +65,7 @@ TEST(StatedDeviations, HoldTogetherWhatEachEdgeHides) {
   drawn.state_alone();
   EXPECT_GT(drawn.over_stated(), 1.25);
   drawn.state_together();
-  EXPECT_GT(drawn.over_stated(), 0.8);
-  EXPECT_LT(drawn.over_stated(), 1.25);
+  drawn.expect_errors_as_stated();
 }
 
 TEST(StatedDeviations, AreNoLargerWhereCornersAddNothing) {
@@ -69,8 +73,7 @@ TEST(StatedDeviations, AreNoLargerWhereCornersAddNothing) {
   DrawnEdges drawn;
   drawn.add(400, 2.5, 0, random);
   drawn.state_together();
-  EXPECT_GT(drawn.over_stated(), 0.8);
-  EXPECT_LT(drawn.over_stated(), 1.25);
+  drawn.expect_errors_as_stated();
 }
 
 TEST(StatedDeviations, AreThoseOfEdgesOfTheSameBlur) {
@@ -79,8 +82,7 @@ TEST(StatedDeviations, AreThoseOfEdgesOfTheSameBlur) {
   drawn.add(400, 6, 2.5e-3, random);
   drawn.add(400, 2.5, 0, random);
   drawn.state_together();
-  EXPECT_GT(drawn.over_stated(400), 0.8);
-  EXPECT_LT(drawn.over_stated(400), 1.25);
+  drawn.expect_errors_as_stated(400);
 }
 
 }  // namespace
