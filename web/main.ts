@@ -630,6 +630,7 @@ class Page {
       this.buildControls();
     }
     this.answered();
+    document.body.dataset.layout = String(message.id);
     this.lastLayout = message;
     this.refreshBehindFrame();  // the rays are drawn first
   }

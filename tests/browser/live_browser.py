@@ -15,8 +15,8 @@ PATIENCE_S = 600  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id && !page.stale && !page.lastLayout);"""
-DRAWN = """const page = window.petzvalPage;
-return Boolean(page && !page.pending && page.link.isOpen && !page.stale && !page.lastLayout);"""
+DRAWN = """const page = window.petzvalPage, set = document.body.dataset;
+return Boolean(page && !page.pending && page.link.isOpen && Number(set.layout) === page.id && !page.stale && !page.lastLayout);"""
 # Movements of a pointer reach the page with a frame; and what is shown may change the sizes of other parts, which are drawn anew in the next.
 NEXT_FRAME = "const done = arguments[0]; requestAnimationFrame(() => setTimeout(done));"
 
