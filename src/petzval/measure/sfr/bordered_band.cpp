@@ -38,17 +38,18 @@ BorderedCholesky::BorderedCholesky(BorderedBand matrix)
 }
 
 double BorderedCholesky::log_determinant() const {
+  constexpr int together = 4;  // of whose products a logarithm is taken
   double sum = 0;
-  for (int j = 0; j < factor_.size(); ++j) sum += std::log(factor_.at(j, j));
+  for (int first = 0; first < factor_.size(); first += together) {
+    double product = 1;
+    for (int j = first; j < std::min(first + together, factor_.size()); ++j) product *= factor_.at(j, j);
+    sum += std::log(product);
+  }
   return 2 * sum;
 }
 
 template <int count>
-void BorderedCholesky::solve_lanes(double* x) const {
-  if constexpr (count == BorderedBand::lanes) {
-    solve_eight({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), x);
-    return;
-  }
+void BorderedCholesky::solve_lower(double* x) const {
   using Lanes = Eigen::Array<double, 1, count>;
   const int band = factor_.band(), border = factor_.border(), size = factor_.size();
   const auto row = [&](int i) { return Eigen::Map<Lanes>(x + static_cast<std::ptrdiff_t>(i) * count); };
@@ -60,6 +61,13 @@ void BorderedCholesky::solve_lanes(double* x) const {
       for (int p = 1; p <= below(factor_, j); ++p) row(j + p) -= l[p] * value;
     for (int r = std::max(0, j - band + 1); r < border; ++r) row(band + r) -= l[corner + r] * value;
   }
+}
+
+template <int count>
+void BorderedCholesky::solve_upper(double* x) const {
+  using Lanes = Eigen::Array<double, 1, count>;
+  const int band = factor_.band(), border = factor_.border(), size = factor_.size();
+  const auto row = [&](int i) { return Eigen::Map<Lanes>(x + static_cast<std::ptrdiff_t>(i) * count); };
   for (int j = size - 1; j >= 0; --j) {
     const double* const l = factor_.column(j);
     Lanes value = row(j);
@@ -70,42 +78,35 @@ void BorderedCholesky::solve_lanes(double* x) const {
   }
 }
 
+template <int count>
+void BorderedCholesky::solve_lanes(double* x) const {
+  if constexpr (count == BorderedBand::lanes) {
+    solve_eight({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), x);
+  } else {
+    solve_lower<count>(x);
+    solve_upper<count>(x);
+  }
+}
+
 template void BorderedCholesky::solve_lanes<2>(double*) const;
 template void BorderedCholesky::solve_lanes<4>(double*) const;
 template void BorderedCholesky::solve_lanes<BorderedBand::lanes>(double*) const;
 
-Eigen::VectorXd BorderedCholesky::solve(const Eigen::VectorXd& right) const {
+Eigen::VectorXd BorderedCholesky::solve_lower(const Eigen::VectorXd& right) const {
   Eigen::VectorXd x = right;
-  solve_lanes<1>(x.data());
+  solve_lower<1>(x.data());
+  return x;
+}
+
+Eigen::VectorXd BorderedCholesky::solve_upper(const Eigen::VectorXd& halfway) const {
+  Eigen::VectorXd x = halfway;
+  solve_upper<1>(x.data());
   return x;
 }
 
 BorderedBand BorderedCholesky::inverse() const {
-  // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
-  const int band = factor_.band(), border = factor_.border();
-  BorderedBand z(band, border);
-  for (int j = factor_.size() - 1; j >= 0; --j) {
-    int rows[BorderedBand::width + BorderedBand::most_border];
-    double l[BorderedBand::width + BorderedBand::most_border];
-    int count = 0;
-    for (int p = 1; j < band && p <= below(factor_, j); ++p) rows[count++] = j + p;
-    for (int r = std::max(0, j - band + 1); r < border; ++r) rows[count++] = band + r;
-    for (int k = 0; k < count; ++k) l[k] = factor_.at(rows[k], j);
-    const double scale = 1 / factor_.at(j, j);
-    double sums[BorderedBand::width + BorderedBand::most_border] = {};
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < i; ++k) {
-        const double beside = z.at(rows[i], rows[k]);
-        sums[i] += l[k] * beside;
-        sums[k] += l[i] * beside;
-      }
-      sums[i] += l[i] * z.at(rows[i], rows[i]);
-    }
-    for (int i = 0; i < count; ++i) z.at(rows[i], j) = -sums[i] * scale;
-    double sum = 0;
-    for (int k = 0; k < count; ++k) sum += l[k] * z.at(rows[k], j);
-    z.at(j, j) = (scale - sum) * scale;
-  }
+  BorderedBand z(factor_.band(), factor_.border());
+  invert({factor_.column(0), factor_.band(), factor_.border()}, per_diagonal_.data(), z.column(0));
   return z;
 }
 

@@ -60,7 +60,10 @@ class BorderedCholesky {
   /// Whether the matrix was positive definite; if not, nothing else may be asked.
   bool good() const { return good_; }
   double log_determinant() const;
-  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return solve_upper(solve_lower(right)); }
+  /// The two halves of it: y of L y = right, and x of Lᵀ x = y.
+  Eigen::VectorXd solve_lower(const Eigen::VectorXd& right) const;
+  Eigen::VectorXd solve_upper(const Eigen::VectorXd& halfway) const;
   /// Of 2, 4 or `lanes` right sides.
   template <int count>
   void solve_in_place(BorderedBand::Columns<count>& right) const {
@@ -71,6 +74,10 @@ class BorderedCholesky {
   BorderedBand inverse() const;
 
  private:
+  template <int count>
+  void solve_lower(double* x) const;
+  template <int count>
+  void solve_upper(double* x) const;
   template <int count>
   void solve_lanes(double* x) const;
 

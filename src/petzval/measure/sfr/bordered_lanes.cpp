@@ -178,6 +178,91 @@ HWY_ATTR void quadratic(const BorderedEntries& matrix, const double* x, double* 
   hn::StoreU(sum, d, results);
 }
 
+/// The rows of an inverse that a column touches: those of the `width` columns behind it, row j in the place j
+/// modulo `width`, then those of the border. A row that is done takes the place of the one it no longer
+/// touches, in the columns of the others as they are read.
+template <int border>
+class InverseWindow {
+ public:
+  static constexpr int width = BorderedBand::width, rows = width + border,
+                       room = (rows + eight - 1) / eight * eight;
+
+  /// \param l  column of the factor below its diagonal, by places. \returns the diagonal entry of the
+  /// inverse; column() has the others.
+  HWY_ATTR double take(int place, const double* l, double per_diagonal) {
+    const Lanes d;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(Lanes())), parts = room / lanes;
+    const auto taken_place = hn::Set(d, static_cast<double>(taken_));
+    Vector sums[parts];
+    for (Vector& sum : sums) sum = hn::Zero(d);
+    for (int k = 0; k < rows; ++k) {
+      const bool taken = k == taken_;
+      const auto factor = hn::Set(d, l[k]), changed = hn::Set(d, taken ? diagonal_ : column_[k]);
+      const double* const entries = taken ? column_ : entries_[k];
+      for (int v = 0; v < parts; ++v) {
+        const auto place_of = hn::Iota(d, static_cast<double>(v * lanes));
+        const auto row =
+            hn::IfThenElse(hn::Eq(place_of, taken_place), changed, hn::LoadU(d, entries + v * lanes));
+        hn::StoreU(row, d, entries_[k] + v * lanes);
+        sums[v] = hn::MulAdd(factor, row, sums[v]);
+      }
+    }
+    // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l.
+    auto product = hn::Zero(d);
+    for (int v = 0; v < parts; ++v) {
+      const auto values = hn::Mul(sums[v], hn::Set(d, -per_diagonal));
+      product = hn::MulAdd(hn::LoadU(d, l + v * lanes), values, product);
+      hn::StoreU(values, d, column_ + v * lanes);
+    }
+    taken_ = place;
+    return diagonal_ = (per_diagonal - hn::GetLane(hn::SumOfLanes(d, product))) * per_diagonal;
+  }
+  /// The one taken last, by places.
+  const double* column() const { return column_; }
+
+ private:
+  double entries_[rows][room] = {}, column_[room] = {}, diagonal_ = 0;
+  int taken_ = -1;  ///< place
+};
+
+/// K. Takahashi, J. Fagan & M.-S. Chen, Proc. 8th PICA Conference, 1973: column by column from the last.
+template <int border>
+HWY_ATTR void invert_with(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  using Window = InverseWindow<border>;
+  constexpr int width = Window::width;
+  constexpr std::ptrdiff_t stride = corner + border;
+  const int band = factor.band;
+  Window window;
+  for (int k = border - 1; k >= 0; --k) {
+    const std::ptrdiff_t column = stride * (band + k) + corner;
+    double l[Window::room] = {};
+    for (int r = k + 1; r < border; ++r) l[width + r] = factor.entries[column + r];
+    inverse[column + k] = window.take(width + k, l, per_diagonal[band + k]);
+    for (int r = k + 1; r < border; ++r) inverse[column + r] = window.column()[width + r];
+  }
+  for (int j = band - 1; j >= 0; --j) {
+    const std::ptrdiff_t column = stride * j;
+    const int reach = below(factor, j);
+    double l[Window::room] = {};
+    for (int p = 1; p <= reach; ++p) l[(j + p) % width] = factor.entries[column + p];
+    for (int r = 0; r < border; ++r) l[width + r] = factor.entries[column + corner + r];
+    inverse[column] = window.take(j % width, l, per_diagonal[j]);
+    for (int p = 1; p <= reach; ++p) inverse[column + p] = window.column()[(j + p) % width];
+    for (int r = 0; r < border; ++r) inverse[column + corner + r] = window.column()[width + r];
+  }
+}
+
+template <int border>
+HWY_ATTR void invert_with_border(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  if constexpr (border < BorderedBand::most_border)
+    if (factor.border > border) return invert_with_border<border + 1>(factor, per_diagonal, inverse);
+  invert_with<border>(factor, per_diagonal, inverse);
+}
+
+HWY_ATTR void invert_all(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  invert_with_border<1>(factor, per_diagonal, inverse);
+}
+
 /// With fewer lanes than eight, one part of the vectors after the other.
 HWY_ATTR void solve_all(const BorderedEntries& factor, const double* per_diagonal, double* x) {
   for (int v = 0; v < eight; v += static_cast<int>(hn::Lanes(Lanes())))
@@ -197,6 +282,7 @@ namespace petzval {
 
 HWY_EXPORT(eliminate_all);
 HWY_EXPORT(solve_all);
+HWY_EXPORT(invert_all);
 HWY_EXPORT(quadratic_of_all);
 
 bool factor_in_place(double* entries, int band, int border, double* per_diagonal) {
@@ -205,6 +291,10 @@ bool factor_in_place(double* entries, int band, int border, double* per_diagonal
 
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x) {
   HWY_DYNAMIC_DISPATCH(solve_all)(factor, per_diagonal, x);
+}
+
+void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse) {
+  HWY_DYNAMIC_DISPATCH(invert_all)(factor, per_diagonal, inverse);
 }
 
 void quadratic_of_eight(const BorderedEntries& matrix, const double* x, double* results) {

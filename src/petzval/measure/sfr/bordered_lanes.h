@@ -19,6 +19,10 @@ bool factor_in_place(double* entries, int band, int border, double* per_diagonal
 /// of eight.
 void solve_eight(const BorderedEntries& factor, const double* per_diagonal, double* x);
 
+/// The inverse of L Lᵀ where the pattern has entries, into entries of the same pattern. \param per_diagonal
+/// reciprocals of the factor's diagonal.
+void invert(const BorderedEntries& factor, const double* per_diagonal, double* inverse);
+
 /// xᵀ M x of each vector. \param x  rows of eight. \param results  eight.
 void quadratic_of_eight(const BorderedEntries& matrix, const double* x, double* results);
 

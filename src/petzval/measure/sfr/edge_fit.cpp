@@ -7,24 +7,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <iterator>
+#include <vector>
 
 namespace petzval {
 
 EdgeNoise noise_about(const EdgeProfile& profile, const EdgeSpreadModel& model, double unknowns) {
-  double sum[2] = {0, 0}, weight[2] = {0, 0};
+  const double middle = model.dark() + 0.5 * model.step();
+  double sum_dark = 0, sum_bright = 0;
+  std::size_t bright = 0;
   for (std::size_t i = 0; i < profile.points.size(); ++i) {
     const double expected = profile.fitted[i].value;
     const double residual = profile.points[i].value - expected - profile.variation[i];
-    const int side = expected > model.dark() + 0.5 * model.step() ? 1 : 0;
-    sum[side] += residual * residual;
-    weight[side] += 1;
+    const double square = residual * residual;
+    const bool is_bright = expected > middle;
+    sum_dark += is_bright ? 0 : square;
+    sum_bright += is_bright ? square : 0;
+    bright += is_bright ? 1 : 0;
   }
   // The unknowns of the profile take their share of the residuals.
   const double n = static_cast<double>(profile.points.size());
   const double freedom = std::max(0.1, 1 - unknowns / n);
-  return {sum[0] / std::max(1.0, weight[0]) / freedom, sum[1] / std::max(1.0, weight[1]) / freedom,
-          (sum[0] + sum[1]) / n / freedom};
+  const double n_bright = static_cast<double>(bright);
+  return {sum_dark / std::max(1.0, n - n_bright) / freedom, sum_bright / std::max(1.0, n_bright) / freedom,
+          (sum_dark + sum_bright) / n / freedom};
 }
 
 namespace {
@@ -84,11 +91,16 @@ double overshoot(const EdgeSpreadModel& model) {
 /// The lowest frequency of half the contrast, to a hundredth; 0 if there is none up to 1.
 double mtf50_cpp(const EdgeSpreadModel& model) {
   constexpr double step = 0.01;
+  constexpr int together = BorderedBand::lanes;
   double before = 1;
-  for (double f = step; f < 1; f += step) {
-    const double contrast = std::abs(model.transform(f));
-    if (contrast < 0.5) return f - step * (0.5 - contrast) / (before - contrast);
-    before = contrast;
+  for (int first = 1; first * step < 1; first += together) {
+    std::vector<double> frequencies;
+    for (int i = first; i < first + together && i * step < 1; ++i) frequencies.push_back(i * step);
+    for (std::size_t i = 0; const std::complex<double>& value : model.transforms(frequencies)) {
+      const double contrast = std::abs(value), f = frequencies[i++];
+      if (contrast < 0.5) return f - step * (0.5 - contrast) / (before - contrast);
+      before = contrast;
+    }
   }
   return 0;
 }
@@ -207,29 +219,30 @@ double EdgeFit::reach_of_blur_px() const {
 /// Once more with what edges look like, now that the line rests and the noise is known, unless smoothness
 /// alone explains the samples better. Light makes no profile that passes its levels, sharpening does.
 void EdgeFit::fit_to_shapes() {
-  take_shapes({});
+  compare_with({});
   constexpr double plain_deviations = 4, least_share = 5e-3;
   const double deviation = noise_ * std::sqrt(unknowns_ / static_cast<double>(profile_.points.size()));
-  if (overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step())) return;
+  const bool sharpened =
+      overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step());
   const double smooth = model_->criterion();
   constexpr int rounds = 2;
   constexpr double alike = 0.02;  // a tenth of how well shapes expect the width to be known
   double before = 0;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < rounds && !sharpened; ++round) {
     const double mtf50 = mtf50_cpp(*model_);
     if (!EdgeShapes::possible(mtf50, line_.normal_rad) || std::abs(mtf50 - before) < alike * mtf50) break;
-    take_shapes(EdgeShapes(mtf50, line_.normal_rad));
+    compare_with(EdgeShapes(mtf50, line_.normal_rad));
     before = mtf50;
   }
-  if (model_->options().prior.shapes && model_->criterion() >= smooth) take_shapes({});
+  if (model_->options().prior.shapes && model_->criterion() >= smooth) compare_with({});
+  smoothing_ = -1;
+  take_profile();
 }
 
-void EdgeFit::take_shapes(const std::optional<EdgeShapes>& shapes) {
+void EdgeFit::compare_with(const std::optional<EdgeShapes>& shapes) {
   EdgePriorOptions prior = model_->options().prior;
   prior.noise = noise_, prior.shapes = shapes;
   model_->take_prior(prior, profile_.points);
-  smoothing_ = -1;
-  take_profile();
 }
 
 void EdgeFit::settle_by_evidence(const SfrOptions& options) {
@@ -341,10 +354,13 @@ void EdgeFit::fit_profile() {
   take_profile();
 }
 
-/// Light that plainly does not matter need not be fitted until the line rests.
+/// Light that plainly does not matter, or cannot be told from noise, need not be fitted until the line rests.
 void EdgeFit::leave_out_even_light() {
+  constexpr double plainly = 0.5;
   const double reach = std::min(-profile_.low, profile_.high);
-  if (model_->variation_over(reach) > 0.5 * least_variation) return;
+  if (model_->variation_over(reach) > plainly * least_variation &&
+      model_->variation_significance(model_->likely_noise()) > plainly * significant)
+    return;
   light_order_ = 0;
   model_->take_light_to_order(light_order_, profile_.points);
 }
@@ -403,11 +419,15 @@ void EdgeFit::bend_by_guess(const SfrOptions& options) {
 }
 
 void EdgeFit::settle() {
+  smoothing_ = -1;
+  move_to_rest();
+}
+
+void EdgeFit::move_to_rest() {
   constexpr int most_rounds = 40;
   EdgeAlignment before;
   double length = 1;  // of a step, over the one that a linear problem needs
   for (int round = 0; round < most_rounds; ++round) {
-    if (round == 0) smoothing_ = -1;
     fit_placed();
     smoothing_ = model_->smoothing();
     const EdgeAlignment change = line_alignment();
@@ -456,7 +476,7 @@ void EdgeFit::judge_light() {
   if (at_rest(change)) return;
   align(line_, change, 1);
   turn_by_bend(line_);
-  settle();
+  move_to_rest();
 }
 
 }  // namespace petzval

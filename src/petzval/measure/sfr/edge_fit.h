@@ -72,8 +72,9 @@ class EdgeFit {
   EdgeAlignment line_alignment() const;
   void bend_by_guess(const SfrOptions& options);
   void fit_to_shapes();
-  void take_shapes(const std::optional<EdgeShapes>& shapes);
+  void compare_with(const std::optional<EdgeShapes>& shapes);
   void settle();
+  void move_to_rest();
   void settle_by_evidence(const SfrOptions& options);
   void settle_in_rows(const SfrOptions& options);
   void bend_by_evidence();

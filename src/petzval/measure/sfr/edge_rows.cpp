@@ -129,14 +129,6 @@ HWY_ATTR void make_rows(std::span<const EdgePoint> points, const EdgeSpreadBasis
   }
 }
 
-/// sums += factor · values
-HWY_ATTR HWY_INLINE void add_multiple(double factor, const double* values, int count, double* sums) {
-  const Lanes d;
-  const auto f = hn::Set(d, factor);
-  for (int v = 0; v < count; v += static_cast<int>(hn::Lanes(d)))
-    hn::StoreU(hn::MulAdd(f, hn::LoadU(d, values + v), hn::LoadU(d, sums + v)), d, sums + v);
-}
-
 /// From interval to interval, so that sums over its points stay in registers.
 template <int fixed, int fixed_lanes>
 HWY_ATTR void add_products(const EdgeRows& rows, const double* weights, double* columns, double* corner) {
@@ -198,19 +190,6 @@ HWY_ATTR void add_all_products(const EdgeRows& rows, const double* weights, int 
     add_products<9, 16>(rows, weights, columns, corner);
 }
 
-/// The slope of the splines over the interval at `share` of it, per interval.
-HWY_ATTR HWY_INLINE double spline_slope(double share, const double* coefficients) {
-  const Lanes d;
-  const auto t = hn::Set(d, share);
-  auto slope = hn::Zero(d);
-  for (int v = 0; v < spline_lanes; v += static_cast<int>(hn::Lanes(d))) {
-    auto sum = hn::LoadU(d, powers.slopes[support - 2] + v);
-    for (int m = support - 3; m >= 0; --m) sum = hn::MulAdd(sum, t, hn::LoadU(d, powers.slopes[m] + v));
-    slope = hn::MulAdd(sum, hn::LoadU(d, coefficients + v), slope);
-  }
-  return hn::GetLane(hn::SumOfLanes(d, slope));
-}
-
 HWY_ATTR HWY_INLINE double product_of(const double* a, const double* b, int count) {
   const Lanes d;
   auto sum = hn::Zero(d);
@@ -235,16 +214,31 @@ HWY_ATTR void evaluate_form_slopes(const EdgeRows& rows, const double* fixed, do
   }
 }
 
+/// What the splines add up to in an interval between knots, as powers of the share of it.
+struct CellPowers {
+  double values[support];
+
+  HWY_ATTR explicit CellPowers(const double* coefficients) {
+    for (int m = 0; m < support; ++m) values[m] = product_of(powers.values[m], coefficients, spline_lanes);
+  }
+};
+
 template <int fixed_lanes>
 HWY_ATTR void evaluate(const EdgeRows& rows, double per_knot, const double* splines, const double* fixed,
                        double* values, double* slopes) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double* const row = rows.fixed(i);
-    values[i] = product_of(row, fixed, fixed_lanes);
-    const int first = rows.first(i);
-    if (first < 0) continue;
-    values[i] += product_of(row + fixed_lanes, splines + first, spline_lanes);
-    slopes[i] += per_knot * spline_slope(rows.share(i), splines + first);
+  for (std::size_t i = 0; i < rows.size(); ++i) values[i] = product_of(rows.fixed(i), fixed, fixed_lanes);
+  for (int cell = 0; cell < rows.cells(); ++cell) {
+    const CellPowers of(splines + cell);
+    for (const std::uint32_t i : rows.in_cell(cell)) {
+      const double t = rows.share(i);
+      double value = of.values[support - 1], slope = 0;
+      for (int m = support - 2; m >= 0; --m) {
+        slope = slope * t + value;
+        value = value * t + of.values[m];
+      }
+      values[i] += value;
+      slopes[i] += per_knot * slope;
+    }
   }
 }
 
@@ -257,26 +251,56 @@ HWY_ATTR void evaluate_all(const EdgeRows& rows, double per_knot, const double* 
     evaluate<16>(rows, per_knot, splines, fixed, values, slopes);
 }
 
-template <int fixed_lanes>
-HWY_ATTR void project(const EdgeRows& rows, const double* functions, int count, double* sums) {
+/// From interval to interval, as add_products().
+template <int count, int fixed_lanes>
+HWY_ATTR void project(const EdgeRows& rows, const double* functions, double* sums) {
+  const Lanes d;
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(Lanes())), of_splines = spline_lanes / lanes,
+                of_fixed = fixed_lanes / lanes;
   const std::size_t stride = rows.projections();
-  double* const of_fixed = sums + stride - fixed_lanes;
-  for (std::size_t i = 0; i < rows.size(); ++i, functions += count) {
-    const int first = rows.first(i);
-    const double *const fixed = rows.fixed(i), *const splines = fixed + fixed_lanes;
-    for (int k = 0; k < count; ++k) {
-      const std::ptrdiff_t at = k * static_cast<std::ptrdiff_t>(stride);
-      add_multiple(functions[k], fixed, fixed_lanes, of_fixed + at);
-      if (first >= 0) add_multiple(functions[k], splines, spline_lanes, sums + at + first);
+  Vector beside[count][of_fixed];
+  for (auto& each : beside)
+    for (Vector& sum : each) sum = hn::Zero(d);
+  for (int cell = -1; cell < rows.cells(); ++cell) {
+    Vector within[count][of_splines];
+    for (auto& each : within)
+      for (Vector& sum : each) sum = hn::Zero(d);
+    for (const std::uint32_t i : rows.in_cell(cell)) {
+      const double *const fixed = rows.fixed(i), *const splines = fixed + fixed_lanes;
+      for (int k = 0; k < count; ++k) {
+        const auto factor = hn::Set(d, functions[i * count + static_cast<std::size_t>(k)]);
+        for (int v = 0; v < of_fixed; ++v)
+          beside[k][v] = hn::MulAdd(factor, hn::LoadU(d, fixed + v * lanes), beside[k][v]);
+        for (int v = 0; v < of_splines; ++v)
+          within[k][v] = hn::MulAdd(factor, hn::LoadU(d, splines + v * lanes), within[k][v]);
+      }
     }
+    for (std::size_t k = 0; k < count && cell >= 0; ++k)
+      for (int v = 0; v < of_splines; ++v) {
+        double* const sum = sums + k * stride + cell + v * lanes;
+        hn::StoreU(hn::Add(hn::LoadU(d, sum), within[k][v]), d, sum);
+      }
   }
+  for (std::size_t k = 0; k < count; ++k)
+    for (int v = 0; v < of_fixed; ++v)
+      hn::StoreU(beside[k][v], d, sums + (k + 1) * stride - fixed_lanes + v * lanes);
+}
+
+template <int count>
+HWY_ATTR void project_so_many(const EdgeRows& rows, const double* functions, double* sums) {
+  if (rows.fixed_lanes() == 8)
+    project<count, 8>(rows, functions, sums);
+  else
+    project<count, 16>(rows, functions, sums);
 }
 
 HWY_ATTR void project_all(const EdgeRows& rows, const double* functions, int count, double* sums) {
-  if (rows.fixed_lanes() == 8)
-    project<8>(rows, functions, count, sums);
+  if (count == 2)
+    project_so_many<2>(rows, functions, sums);
+  else if (count == 4)
+    project_so_many<4>(rows, functions, sums);
   else
-    project<16>(rows, functions, count, sums);
+    project_so_many<8>(rows, functions, sums);
 }
 
 }  // namespace

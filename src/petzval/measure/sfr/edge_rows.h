@@ -69,8 +69,8 @@ class EdgeRows {
   Sums evaluate(std::span<const double> splines, std::span<const double> fixed) const;
 
   /// Sums over the points of the products with other functions of them. \param functions  `count` values for
-  /// each point, one after the other. \returns for each function `projections()`: with the splines that rows
-  /// count, `spline_lanes` more, and with what reaches everywhere.
+  /// each point, one after the other: 2, 4 or 8. \returns for each function `projections()`: with the splines
+  /// that rows count, `spline_lanes` more, and with what reaches everywhere.
   std::vector<double> project(std::span<const double> functions, int count) const;
   std::size_t projections() const { return static_cast<std::size_t>(padded_ + spline_lanes + fixed_lanes_); }
 

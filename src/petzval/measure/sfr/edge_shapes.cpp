@@ -4,6 +4,7 @@
 #include <petzval/measure/sfr/edge_shapes.h>
 #include <petzval/numeric/quadrature.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,13 +14,15 @@ namespace petzval {
 
 namespace {
 
-/// The edge of a circular pupil of cut-off frequency 1: E(u) = ½ + ∫₀¹ M(ν) sin(2πνu)/(πν) dν and its
-/// derivative, M the MTF.
-class CircularPupilEdge {
+/// An edge-spread function E(u) = 1 − E(−u) and its slope, between places at which they are known.
+class TabulatedEdge {
  public:
-  static const CircularPupilEdge& table() {
-    static const CircularPupilEdge made;
-    return made;
+  static constexpr int farthest = 64, per_unit = 32, intervals = farthest * per_unit;
+
+  /// \param at  E and its slope at the i-th of `intervals` + 1 places from u = 0.
+  template <typename Function>
+  explicit TabulatedEdge(const Function& at) {
+    for (int i = 0; i <= intervals; ++i) nodes_.push_back(at(i));
   }
 
   struct At {
@@ -29,15 +32,16 @@ class CircularPupilEdge {
     const double size = std::abs(u), at = size * per_unit;
     At result{};
     if (at >= intervals) {  // 1 − A/u
-      const double rest = (1 - value_.back()) * farthest / size;
+      const double rest = (1 - nodes_.back().value) * farthest / size;
       result = {1 - rest, rest / size};
     } else {
       const auto i = static_cast<std::size_t>(at);
+      const At &before = nodes_[i], &after = nodes_[i + 1];
       const double t = at - static_cast<double>(i), h = 1.0 / per_unit,
-                   difference = value_[i + 1] - value_[i];
+                   difference = after.value - before.value;
       // Hermite's cubic through values and slopes.
-      const double a = h * slope_[i] - difference, c = difference - h * slope_[i + 1];
-      result.value = value_[i] + t * (difference + (1 - t) * (a * (1 - t) + c * t));
+      const double a = h * before.slope - difference, c = difference - h * after.slope;
+      result.value = before.value + t * (difference + (1 - t) * (a * (1 - t) + c * t));
       result.slope = per_unit * (difference + (1 - 2 * t) * (a * (1 - t) + c * t) + t * (1 - t) * (c - a));
     }
     if (u < 0) result.value = 1 - result.value;
@@ -45,24 +49,43 @@ class CircularPupilEdge {
   }
 
  private:
-  static constexpr int farthest = 64, per_unit = 32, intervals = farthest * per_unit;
-
-  CircularPupilEdge() : value_(intervals + 1, 0.5), slope_(intervals + 1, 0) {
-    // Half a turn a node at the farthest, and as much again for what M does at its end.
-    const QuadratureRule rule = gauss_legendre(4 * farthest);
-    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-      const double nu = rule.nodes[k], mtf = 2 / pi * (std::acos(nu) - nu * std::sqrt(1 - nu * nu));
-      const double weight = rule.weights[k] * mtf, turn = 2 * pi * nu / per_unit;
-      for (int i = 0; i <= intervals; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        value_[at] += weight * std::sin(turn * i) / (pi * nu);
-        slope_[at] += 2 * weight * std::cos(turn * i);
-      }
-    }
-  }
-
-  std::vector<double> value_, slope_;
+  std::vector<At> nodes_;
 };
+
+/// Of a Gaussian of standard deviation 1.
+const TabulatedEdge& gaussian_edge() {
+  static const TabulatedEdge made([](int i) {
+    const double x = static_cast<double>(i) / TabulatedEdge::per_unit;
+    return TabulatedEdge::At{0.5 * std::erfc(-x / std::numbers::sqrt2),
+                             std::exp(-0.5 * x * x) / std::sqrt(2 * pi)};
+  });
+  return made;
+}
+
+/// Of a circular pupil of cut-off frequency 1: E(u) = ½ + ∫₀¹ M(ν) sin(2πνu)/(πν) dν, M the MTF.
+const TabulatedEdge& circular_edge() {
+  static const TabulatedEdge made = [] {
+    // Half a turn a node at the farthest, and as much again for what M does at its end.
+    const QuadratureRule rule = gauss_legendre(4 * TabulatedEdge::farthest);
+    const auto n = static_cast<Eigen::Index>(rule.nodes.size());
+    const Eigen::ArrayXd nu = Eigen::Map<const Eigen::ArrayXd>(rule.nodes.data(), n);
+    const Eigen::ArrayXd mtf = 2 / pi * (nu.acos() - nu * (1 - nu.square()).sqrt());
+    const Eigen::ArrayXd of_slope = 2 * mtf * Eigen::Map<const Eigen::ArrayXd>(rule.weights.data(), n);
+    const Eigen::ArrayXd of_value = of_slope / (2 * pi * nu);
+    // From place to place all phases turn on, which is many times quicker than their sines.
+    const Eigen::ArrayXd turn = 2 * pi / TabulatedEdge::per_unit * nu;
+    const Eigen::ArrayXd turn_cosine = turn.cos(), turn_sine = turn.sin();
+    Eigen::ArrayXd cosine = Eigen::ArrayXd::Ones(n), sine = Eigen::ArrayXd::Zero(n), turned(n);
+    return TabulatedEdge([&](int) {
+      const TabulatedEdge::At at{0.5 + (of_value * sine).sum(), (of_slope * cosine).sum()};
+      turned = cosine * turn_cosine - sine * turn_sine;
+      sine = sine * turn_cosine + cosine * turn_sine;
+      cosine.swap(turned);
+      return at;
+    });
+  }();
+  return made;
+}
 
 double sinc(double x) {
   return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
@@ -109,17 +132,14 @@ EdgeShapes::EdgeShapes(double mtf50_cpp, double normal_rad) {
 }
 
 std::array<double, EdgeShapes::count> EdgeShapes::operator()(double distance_px) const {
-  const CircularPupilEdge& circular = CircularPupilEdge::table();
+  const TabulatedEdge &gaussian = gaussian_edge(), &circular = circular_edge();
   std::array<double, count> sum{};
   for (std::size_t i = 0; i < place_.size(); ++i) {
     const double d = distance_px - place_[i], x = d / sigma_px_, u = d * cutoff_cpp_;
-    constexpr double far = 6;  // where a Gaussian's edge is level to 1e-9
-    const double gauss = std::abs(x) > far ? (x > 0 ? 1 : 0) : 0.5 * std::erfc(-x / std::numbers::sqrt2);
-    const double gauss_wider = std::abs(x) > far ? 0 : -x * std::exp(-0.5 * x * x) / std::sqrt(2 * pi);
-    const CircularPupilEdge::At airy = circular(u);
-    sum[0] += 0.5 * weight_[i] * (gauss + airy.value);
-    sum[1] += 0.5 * weight_[i] * (gauss_wider - u * airy.slope);
-    sum[2] += weight_[i] * (gauss - airy.value);
+    const TabulatedEdge::At gauss = gaussian(x), airy = circular(u);
+    sum[0] += 0.5 * weight_[i] * (gauss.value + airy.value);
+    sum[1] -= 0.5 * weight_[i] * (x * gauss.slope + u * airy.slope);
+    sum[2] += weight_[i] * (gauss.value - airy.value);
   }
   return sum;
 }

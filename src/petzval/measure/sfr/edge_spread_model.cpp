@@ -36,10 +36,11 @@ void evaluate_splines(double share, double* values, double* slopes) {
 /// One choice of the smoothing.
 struct Solved {
   double criterion = HUGE_VAL;  ///< −2 log of the restricted likelihood, but for a constant
-  double of_rest = 0;           ///< what the rest of the samples adds to it
+  double rest = 0;              ///< sum of squares that the profile and its roughness leave
+  double of_rest = 0;           ///< what that adds to the criterion
   double smoothing = 0;
   BorderedCholesky factor;
-  Eigen::VectorXd solution;
+  Eigen::VectorXd halfway;  ///< to the solution: the right side behind the factor's lower half
 };
 
 }  // namespace
@@ -113,9 +114,9 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     solved.factor = BorderedCholesky(std::move(whole));
     if (!solved.factor.good() || !right_.allFinite())
       throw InputError("the pixels do not determine the edge's profile; a larger ROI is needed");
-    solved.solution = solved.factor.solve(right_);
-    const double rest = std::max(square - right_.dot(solved.solution), 1e-14 * square);
-    solved.of_rest = (count - unsettled) * std::log(rest);
+    solved.halfway = solved.factor.solve_lower(right_);
+    solved.rest = std::max(square - solved.halfway.squaredNorm(), 1e-14 * square);
+    solved.of_rest = (count - unsettled) * std::log(solved.rest);
     solved.criterion = solved.of_rest + solved.factor.log_determinant() - rank * std::log(smoothing);
     solved.smoothing = smoothing;
     return solved;
@@ -143,8 +144,9 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     best = solve(options_.smoothing);
   }
   priors_.add(options_.smoothing * unit, rough);
-  coefficients_ = best.solution;
+  coefficients_ = best.factor.solve_upper(best.halfway);
   factor_ = std::move(best.factor);
+  noise_ = std::sqrt(best.rest / std::max(1.0, count - unsettled));
   criterion_ = best.criterion + prior.log_spread_of_shapes();
   dark_ = coefficients_[basis_.dark()];
   step_ = coefficients_[basis_.step()];

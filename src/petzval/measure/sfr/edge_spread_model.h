@@ -86,6 +86,8 @@ class EdgeSpreadModel {
   /// All of them.
   double most_unknowns() const { return static_cast<double>(coefficients_.size()); }
   double smoothing() const { return options_.smoothing; }
+  /// Standard deviation of the values as the restricted likelihood has it.
+  double likely_noise() const { return noise_; }
   /// −2 log of the restricted likelihood, but for what it has in common with that of other models of the same
   /// points, knots and noise.
   double criterion() const { return criterion_; }
@@ -139,7 +141,7 @@ class EdgeSpreadModel {
 
   EdgeSpreadOptions options_;
   EdgeSpreadBasis basis_;
-  double dark_ = 0, step_ = 1, criterion_ = 0;
+  double dark_ = 0, step_ = 1, noise_ = 0, criterion_ = 0;
   Eigen::VectorXd coefficients_;
   EdgeRows rows_;             ///< of the points
   EdgeRows::Products sums_;   ///< over them
