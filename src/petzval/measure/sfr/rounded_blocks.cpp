@@ -14,30 +14,56 @@ namespace {
 using Block = Eigen::Matrix<double, RoundedBlocks::side, RoundedBlocks::side, Eigen::RowMajor>;
 
 /// The orthonormal cosine transform, as ITU-T T.81 has it: coefficients = cosines · block · cosinesᵀ.
-const Block& cosines() {
-  static const Block all = [] {
-    constexpr int n = RoundedBlocks::side;
-    Block rows;
-    for (int k = 0; k < n; ++k)
-      for (int i = 0; i < n; ++i)
-        rows(k, i) = std::sqrt((k == 0 ? 1.0 : 2.0) / n) * std::cos(pi * (2 * i + 1) * k / (2 * n));
-    return rows;
-  }();
-  return all;
+Block cosines() {
+  constexpr int n = RoundedBlocks::side;
+  Block rows;
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i)
+      rows(k, i) = std::sqrt((k == 0 ? 1.0 : 2.0) / n) * std::cos(pi * (2 * i + 1) * k / (2 * n));
+  return rows;
+}
+
+/// Eigen would pack matrices as small as these for a larger product, which takes longer.
+Block product(const Block& a, const Block& b) {
+  return a.lazyProduct(b);
+}
+
+/// What a JPEG makes of the code values of a block.
+Block rounded(const Block& codes, std::span<const int> steps) {
+  static const Block forth = cosines(), back = forth.transpose();
+  constexpr double middle = 128;  // taken off before the transform
+  Block block = product(product(forth, codes.array() - middle), back);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    double& coefficient = block.data()[i];
+    const double in_steps = coefficient / steps[i];
+    coefficient = steps[i] * static_cast<int>(in_steps + std::copysign(0.5, in_steps));
+  }
+  return product(product(back, block), forth).array() + middle;
 }
 
 }  // namespace
 
 RoundedBlocks::RoundedBlocks(const Plane& plane, std::span<const int> steps, std::span<const double> levels)
     : codes_(plane), steps_(steps), levels_(levels) {
+  constexpr std::size_t bins_per_level = 4;
+  first_above_.resize(bins_per_level * levels_.size());
+  bins_per_light_ = static_cast<double>(first_above_.size()) / (levels_.back() - levels_.front());
+  std::size_t code = 1;
+  for (std::size_t bin = 0; bin < first_above_.size(); ++bin) {
+    const double light = levels_.front() + static_cast<double>(bin) / bins_per_light_;
+    while (code + 1 < levels_.size() && levels_[code] <= light) ++code;
+    first_above_[bin] = code;
+  }
   for (double& value : codes_.values) value = code_of(value);
 }
 
 /// Straight between code values, and beyond them as between the last two.
 double RoundedBlocks::code_of(double light) const {
-  const auto above = std::upper_bound(levels_.begin() + 1, levels_.end() - 1, light);
-  const auto code = above - levels_.begin();
-  return static_cast<double>(code) + (light - *above) / (*above - *(above - 1));
+  const double bin = (light - levels_.front()) * bins_per_light_,
+               last = static_cast<double>(first_above_.size()) - 1;
+  std::size_t above = first_above_[static_cast<std::size_t>(std::clamp(bin, 0.0, last))];
+  while (above + 1 < levels_.size() && levels_[above] <= light) ++above;
+  return static_cast<double>(above) + (light - levels_[above]) / (levels_[above] - levels_[above - 1]);
 }
 
 double RoundedBlocks::light_of(double code) const {
@@ -68,9 +94,6 @@ std::vector<double> RoundedBlocks::changes(std::span<const EdgeSample> samples, 
               column = block_of(samples[i].x, offset.x) - first_column;
     in_block[static_cast<std::size_t>(row * columns + column)].push_back(i);
   }
-  constexpr double middle = 128;  // taken off before the transform
-  const Block& forth = cosines();
-  const Eigen::Map<const Eigen::Matrix<int, side, side, Eigen::RowMajor>> steps(steps_.data());
   for (int index = 0; index < rows * columns; ++index) {
     const std::vector<std::size_t>& members = in_block[static_cast<std::size_t>(index)];
     const int top = (first_row + index / columns - 1) * side + offset.y,
@@ -79,18 +102,13 @@ std::vector<double> RoundedBlocks::changes(std::span<const EdgeSample> samples, 
       continue;
     Block codes;
     for (int row = 0; row < side; ++row)
-      for (int column = 0; column < side; ++column)
-        codes(row, column) = codes_.at(left + column, top + row) - middle;
+      for (int column = 0; column < side; ++column) codes(row, column) = codes_.at(left + column, top + row);
     const auto code_at = [&](std::size_t i) -> double& {
       return codes(static_cast<int>(samples[i].y) - top, static_cast<int>(samples[i].x) - left);
     };
-    for (const std::size_t i : members) code_at(i) = code_of(light[i]) - middle;
-    Block coefficients = forth * codes * forth.transpose();
-    for (int k = 0; k < side; ++k)
-      for (int l = 0; l < side; ++l)
-        coefficients(k, l) = steps(k, l) * std::round(coefficients(k, l) / steps(k, l));
-    codes = forth.transpose() * coefficients * forth;
-    for (const std::size_t i : members) result[i] = light_of(code_at(i) + middle) - light[i];
+    for (const std::size_t i : members) code_at(i) = code_of(light[i]);
+    codes = rounded(codes, steps_);
+    for (const std::size_t i : members) result[i] = light_of(code_at(i)) - light[i];
   }
   return result;
 }

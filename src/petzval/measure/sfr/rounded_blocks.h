@@ -38,6 +38,8 @@ class RoundedBlocks {
   Plane codes_;
   std::span<const int> steps_;
   std::span<const double> levels_;
+  double bins_per_light_ = 0;             ///< from the first level to the last, in even bins
+  std::vector<std::size_t> first_above_;  ///< of the levels but the first, above the beginning of each bin
 };
 
 }  // namespace petzval
