@@ -12,8 +12,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "field_option.h"
 
@@ -133,16 +136,20 @@ nlohmann::ordered_json json_of(const SfrReports& reports) {
   return json;
 }
 
-/// What several edges share is said once.
+/// What several edges share is said once, with the names of the first.
 void print_notes(const SfrReport& report, const Shared& shared) {
-  std::map<std::string, std::string> edges_by_note;
+  constexpr std::size_t most_names = 3;
+  std::map<std::string, std::vector<std::string>> edges_by_note;
   for (std::size_t i = 0; i < report.edges.size(); ++i)
-    for (const std::string& text : report.edges[i].exact.notes) {
-      std::string& names = edges_by_note[text];
-      names += (names.empty() ? "" : "; ") + name_of(report.edges[i], i);
-    }
-  for (const auto& [text, names] : edges_by_note)
-    note(shared, fmt::format("{}: {}: {}", report.image, names, text));
+    for (const std::string& text : report.edges[i].exact.notes)
+      edges_by_note[text].push_back(name_of(report.edges[i], i));
+  for (const auto& [text, names] : edges_by_note) {
+    const std::size_t named = std::min(most_names, names.size());
+    std::string edges =
+        fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(named), "; "));
+    if (named < names.size()) edges += fmt::format(" and {} more", names.size() - named);
+    note(shared, fmt::format("{}: {}: {}", report.image, edges, text));
+  }
 }
 
 void print_edge(const SfrReport& report, std::size_t index) {

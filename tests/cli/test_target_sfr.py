@@ -159,6 +159,16 @@ class Target(ProgramTest):
         done = self.petzval("target", "--rectangle", "9x9", "--size", "60x60", "--at", "61,30", *OPTICS, "-o", "t.png")
         self.assertNotIn("no part", done.stderr)
 
+    def test_edges_along_the_grid_are_noted_once(self):
+        # One square along the grid, one along its diagonals, where rows lie closer together.
+        self.write("squares.txt", "4 40 40 100 40 100 100 40 100\n4 200 30 240 70 200 110 160 70\n")
+        self.assert_succeeds("target", "--polygons", "squares.txt", "--size", "280x140", *OPTICS, "-o", "squares.npy")
+        done = self.petzval("sfr", "squares.npy")
+        self.assertEqual(done.returncode, 0)
+        notes = [line for line in done.stderr.splitlines() if "along the pixel grid" in line]
+        self.assertEqual(len(notes), 1, done.stderr)
+        self.assertIn("edge 1; edge 2; edge 3 and 5 more: ", notes[0])
+
     def test_writing(self):
         self.assert_succeeds("target", "--text", "Petzval 1840", "--text-height", "20@10", *OPTICS, "-o", "t.png", "--plot", "p.svg")
         self.assertIn(b"PSF", (self.folder / "p.svg").read_bytes())

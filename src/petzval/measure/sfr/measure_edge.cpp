@@ -353,10 +353,9 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   // pass.
   if (constexpr double harmless_px = 0.5; fit.comb_px() > harmless_px)
     result.notes.push_back(
-        fmt::format("the edge runs along the pixel grid or its diagonal, so that its profile is known only "
-                    "every {:.2f} pixels; a tilt "
-                    "by half a degree is enough to tell what lies between",
-                    fit.comb_px()));
+        "the edge runs along the pixel grid or its diagonal, so that its profile is known in rows only; a "
+        "tilt "
+        "by half a degree is enough to tell what lies between");
   fill_levels(result, model, uncertainty);
   const std::array<double, 3> levels{result.mtf[1].frequency_cpp, result.mtf[4].frequency_cpp,
                                      result.mtf[7].frequency_cpp};
