@@ -142,10 +142,13 @@ int samples_per_cell(double cell_lambda_n, double coarsest_lambda_n) {
   return static_cast<int>(std::ceil(cell_lambda_n / most - rounding));
 }
 
-/// \param growth  of a chosen window.
-PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double growth) {
+/// About the rays of a chosen window. \param growth  of it.
+double margin_mm_of(const Extent& extent, const PsfOptions& options, double growth) {
+  return growth * options.margin * extent.margin_mm();
+}
+
+PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double margin_mm) {
   const double lambda_n_um = extent.lambda_n_mm() * um_per_mm;
-  const double margin_mm = growth * options.margin * extent.margin_mm();
   const double width_um = 2 * (extent.reach_mm() + margin_mm) * um_per_mm;
   const int most = options.size > 0 ? options.size : std::max(options.largest_size, smallest_size);
   PsfPlan plan;
@@ -218,16 +221,33 @@ Psf sum_nodes(const PupilWaves& waves, const PsfPlan& plan) {
 }
 
 /// Sums in a window that grows until it holds the wanted share, if the window is to be chosen.
+/// \param most_margin_mm  of it.
 template <class Sum>
-std::optional<Psf> sum_in_window(const Extent& extent, const PsfOptions& options, const Sum& sum) {
+std::optional<Psf> sum_in_window(const Extent& extent, const PsfOptions& options, double most_margin_mm,
+                                 const Sum& sum) {
   const bool fixed = options.size > 0 && options.spacing_um > 0;
+  const auto margin_mm = [&](double growth) {
+    return std::min(most_margin_mm, margin_mm_of(extent, options, growth));
+  };
   double growth = 1;
-  std::optional<Psf> psf = sum(plan_window(extent, options, growth));
-  for (int i = 0; i < most_growths && psf && !fixed && psf->captured < options.wanted_share; ++i) {
+  std::optional<Psf> psf = sum(plan_window(extent, options, margin_mm(growth)));
+  for (int i = 0; i < most_growths && psf && !fixed && psf->captured < options.wanted_share &&
+                  margin_mm(growth) < most_margin_mm;
+       ++i) {
     growth *= window_growth;
-    psf = sum(plan_window(extent, options, growth));
+    psf = sum(plan_window(extent, options, margin_mm(growth)));
   }
   return psf;
+}
+
+/// About rays whose waves are summed over nodes: a sliver of a pupil spreads light far across itself, but in
+/// windows beyond the widest there is little of it, and rays would leave out all that waves spread. Where
+/// the rays themselves reach far, a window is as wide as it is to be, and theirs.
+double most_margin_mm_of_nodes(const Extent& extent, const PsfOptions& options) {
+  constexpr double before_rounding = 0.95;  // up to whole steps of cells
+  const double margin_mm =
+      before_rounding * options.widest_node_window_lambda_n * extent.lambda_n_mm() - 2 * extent.reach_mm();
+  return margin_mm < margin_lambda_n * extent.lambda_n_mm() ? HUGE_VAL : margin_mm;
 }
 
 }  // namespace
@@ -242,7 +262,8 @@ bool CoarseLight::rays_serve(double lambda_n_um) const {
 }
 
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
-  if (const std::optional<Extent> extent = scout(tracer, chief)) return plan_window(*extent, options, 1);
+  if (const std::optional<Extent> extent = scout(tracer, chief))
+    return plan_window(*extent, options, margin_mm_of(*extent, options, 1));
   return {};
 }
 
@@ -273,7 +294,7 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
 }
 
 Psf point_spread(const SmoothPupil& pupil, const PsfOptions& options) {
-  return *sum_in_window(extent_of(pupil), options, [&](const PsfPlan& plan) -> std::optional<Psf> {
+  return *sum_in_window(extent_of(pupil), options, HUGE_VAL, [&](const PsfPlan& plan) -> std::optional<Psf> {
     return sum_smooth(pupil, plan, options);
   });
 }
@@ -286,7 +307,8 @@ std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief
     return point_spread(*pupil, options);
   const std::optional<Extent> extent = scout(tracer, chief, options.exact_window);
   if (!extent) return {};
-  return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
+  const double most_margin_mm = most_margin_mm_of_nodes(*extent, options);
+  return sum_in_window(*extent, options, most_margin_mm, [&](const PsfPlan& plan) -> std::optional<Psf> {
     const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();
     if (width_mm > 2 * options.widest_node_window_lambda_n * extent->lambda_n_mm())
       return traced_spot(tracer, chief, plan.grid(), options.spot_radial_nodes);
