@@ -11,7 +11,7 @@ namespace petzval {
 
 namespace {
 
-constexpr double b = EdgeSpreadBasis::scale_px;
+constexpr double scale_px = EdgeSpreadBasis::scale_px;
 
 constexpr double usual_tail_spread_px = 0.06;
 
@@ -55,7 +55,7 @@ double EdgePrior::noise() const {
 void EdgePrior::add_first_part(BorderedBand& normal) const {
   // In units of the noise: the first tail is about the usual one, the second below it at twice the blur.
   const double weight1 = noise() / (usual_tail_spread_px * range_);
-  const double offset = b / pi - usual_tail_px;
+  const double offset = scale_px / pi - usual_tail_px;
   const int step = basis_.step(), tail1 = basis_.tail1(), tail3 = basis_.tail3();
   normal.at(step, step) += weight1 * weight1 * offset * offset;
   normal.at(tail1, step) += weight1 * weight1 * offset;
@@ -77,13 +77,13 @@ std::vector<EdgePrior::RoughForm> EdgePrior::rough_forms() const {
   std::array<std::vector<double>, 3 + EdgeShapes::count - 1> values;
   for (std::vector<double>& each : values) each.resize(static_cast<std::size_t>(places));
   for (int j = 0; j < places; ++j) {
-    const double d = (j - 0.5 * (places - 1)) * basis_.knot_px, q = 1 / (d * d + b * b);
+    const double d = (j - 0.5 * (places - 1)) * basis_.knot_px, q = 1 / (d * d + scale_px * scale_px);
     const auto at = static_cast<std::size_t>(j), mirrored = static_cast<std::size_t>(places - 1 - j);
     values[1][at] = -d * q;
     values[2][at] = -d * q * q;
     if (d < 0) continue;  // all are odd about ½
     const std::array<double, EdgeShapes::count> shape = (*options_.shapes)(d);
-    values[0][at] = 0.5 + std::atan(d / b) / pi - shape[0];
+    values[0][at] = 0.5 + std::atan(d / scale_px) / pi - shape[0];
     values[3][at] = -shape[1], values[4][at] = -shape[2];
     for (const std::size_t k : {0, 3, 4}) values[k][mirrored] = -values[k][at];
   }
