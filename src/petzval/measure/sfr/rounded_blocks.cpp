@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace petzval {
 
@@ -36,7 +37,8 @@ Block rounded(const Block& codes, std::span<const int> steps) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     double& coefficient = block.data()[i];
     const double in_steps = coefficient / steps[i];
-    coefficient = steps[i] * static_cast<int>(in_steps + std::copysign(0.5, in_steps));
+    const auto whole = static_cast<std::int64_t>(in_steps + std::copysign(0.5, in_steps));
+    coefficient = steps[i] * static_cast<double>(whole);
   }
   return product(product(back, block), forth).array() + middle;
 }
