@@ -114,16 +114,12 @@ void Formation::form(std::span<const AimedLight> lights, const TakeBand& take,
   note_dark_corners(plans, sensor, report.notes);
   const auto start = std::chrono::steady_clock::now();
   if (places.empty()) {
-    choose(0, places.emplace_back(*this));
+    places.emplace_back(*this);
     const std::size_t wanted = may_keep && fits(plans.size()) ? plans.size() : places_at_once();
     while (places.size() < wanted) places.emplace_back(*this);
   }
   BandProgress progress(scene.bands(), callback);
   double seconds = 0;  // of all bands
-  const auto begin = [&](std::size_t band, std::size_t) {
-    Place& place = place_of(band);
-    if (!place.chosen || places.size() < plans.size()) choose(band, place);
-  };
   const auto end = [&](std::size_t band, std::size_t) {
     if (!share.has(band) && share.known) {
       CellPlane pixels = CellPlane::unset(sensor);
@@ -133,7 +129,9 @@ void Formation::form(std::span<const AimedLight> lights, const TakeBand& take,
     seconds += hand_over(band, take, progress, report);
   };
   parallel_stages(plans.size(), std::min(places.size(), static_cast<std::size_t>(thread_count())),
-                  {begin,
+                  {[&](std::size_t band, std::size_t) {
+                     begin(band, share.has(band) ? lights : std::span<const AimedLight>());
+                   },
                    [&](std::size_t band, std::size_t) {
                      if (share.has(band)) work(band, lights, progress);
                    },
@@ -171,32 +169,56 @@ void Formation::choose(std::size_t band, Place& place) {
   place.says = {};
   place.blur.choose(plans[band], scene.wavelengths_nm()[band], frame, last_plan);
   last_plan = place.blur.plan();
-  place.chosen = true;
+  place.chosen = band;
   place.seconds = place.says.blur_seconds = seconds_since(start);
 }
 
-void Formation::work(std::size_t band, std::span<const AimedLight> lights, BandProgress& progress) {
+std::size_t Formation::lights_at_once(std::size_t band) const {
+  // Lights that look at the same rows in turn share what the lens makes of them.
+  constexpr double most_bytes = 1e8;
+  const SensorGeometry grid = grown(frame, plans[band].margin);
+  return static_cast<std::size_t>(
+      std::max(1.0, most_bytes / (double(grid.columns) * double(grid.rows) * sizeof(float))));
+}
+
+std::vector<CellPlane> Formation::ideal(std::size_t band, std::span<const AimedLight> lights) const {
   const BandPlan& plan = plans[band];
+  // What a pixel's light may come from, after blur and before.
+  const std::vector<AimedLight> on_source =
+      on_cells(lights, taps.cells, taps.size() - taps.cells + 2 * plan.margin);
+  return source_lights(scene, static_cast<int>(band), plan.map, grown(frame, plan.margin), path.source,
+                       options.surround, on_source);
+}
+
+void Formation::begin(std::size_t band, std::span<const AimedLight> lights) {
+  Place& place = place_of(band);
+  place.ideal.clear();
+  if (place.chosen == band) return;
+  const auto some = lights.first(std::min(lights.size(), lights_at_once(band)));
+  double light_seconds = 0;
+  parallel_for(2, [&](std::size_t part) {
+    if (part == 0) return choose(band, place);
+    const auto start = std::chrono::steady_clock::now();
+    if (!some.empty()) place.ideal = ideal(band, some);
+    light_seconds = seconds_since(start);
+  });
+  place.says.distortion_seconds += light_seconds;
+  place.seconds += light_seconds;
+}
+
+void Formation::work(std::size_t band, std::span<const AimedLight> lights, BandProgress& progress) {
   Place& place = place_of(band);
   const auto start = std::chrono::steady_clock::now();
   place.blur.make_kernels();
   place.says.blur_seconds += seconds_since(start);
-  const SensorGeometry grid = grown(frame, plan.margin);
-  // What a pixel's light may come from, after blur and before.
-  const std::vector<AimedLight> on_source =
-      on_cells(lights, taps.cells, taps.size() - taps.cells + 2 * plan.margin);
-  // Lights that look at the same rows in turn share what the lens makes of them.
-  constexpr double most_bytes = 1e8;
-  const auto at_once = static_cast<std::size_t>(
-      std::max(1.0, most_bytes / (double(grid.columns) * double(grid.rows) * sizeof(float))));
   for (std::size_t i = 0; i < lights.size();) {
     const auto start_of_light = std::chrono::steady_clock::now();
-    const auto some = std::span(on_source).subspan(i, std::min(at_once, lights.size() - i));
-    std::vector<CellPlane> ideal =
-        source_lights(scene, static_cast<int>(band), plan.map, grid, path.source, options.surround, some);
+    const auto some = lights.subspan(i, std::min(lights_at_once(band), lights.size() - i));
+    std::vector<CellPlane> before = std::exchange(place.ideal, {});
+    if (before.empty()) before = ideal(band, some);
     place.says.distortion_seconds += seconds_since(start_of_light);
     const auto start_of_blur = std::chrono::steady_clock::now();
-    for (CellPlane& light : ideal) {
+    for (CellPlane& light : before) {
       CellPlane blurred = place.blur(std::move(light), [&](double fraction, const std::string& what) {
         progress.tell(band, (double(i) + fraction) / double(lights.size()), what);
       });

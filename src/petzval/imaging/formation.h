@@ -41,8 +41,9 @@ class Formation {
     Place(const Formation& of) : blur(of.table, of.centres, of.options, says, of.contrast) {}
     ImagingReport says;
     BandBlur blur;
-    bool chosen = false;
-    std::vector<CellPlane> pixels;  ///< of each light
+    std::optional<std::size_t> chosen;  ///< the band whose plan the blur holds
+    std::vector<CellPlane> ideal;       ///< before the blur, of the first lights
+    std::vector<CellPlane> pixels;      ///< of each light
     double seconds = 0;
   };
 
@@ -59,7 +60,13 @@ class Formation {
   std::size_t places_at_once() const;
 
   void choose(std::size_t band, Place& place);
+  /// How many lights are looked up together.
+  std::size_t lights_at_once(std::size_t band) const;
+  /// Light before the blur, on cells, of some lights.
+  std::vector<CellPlane> ideal(std::size_t band, std::span<const AimedLight> some) const;
 
+  /// Chooses the band's kernels beside making its first lights, if they are not chosen yet.
+  void begin(std::size_t band, std::span<const AimedLight> lights);
   void work(std::size_t band, std::span<const AimedLight> lights, BandProgress& progress);
 
   /// \return the time that the band took.
