@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/imaging/band_plan.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
 namespace petzval {
 
@@ -22,8 +26,10 @@ double half_diagonal_mm(const SensorGeometry& grid) {
 std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
                                  const ImagingOptions& options) {
   const LightCentres centres(table);
-  std::vector<BandPlan> plans;
-  for (const double wavelength_nm : scene.wavelengths_nm()) {
+  const std::vector<double>& wavelengths_nm = scene.wavelengths_nm();
+  std::vector<std::optional<BandPlan>> found(wavelengths_nm.size());
+  parallel_for(found.size(), [&](std::size_t band) {
+    const double wavelength_nm = wavelengths_nm[band];
     int margin = 0;
     double least_captured = 1;
     if (options.method != BlurMethod::none) {
@@ -34,8 +40,10 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
     if (options.by_sections()) transform_size(options.section_options(), margin);
     SceneMap map(table, centres, options.fit, wavelength_nm, scene,
                  half_diagonal_mm(grown(frame, margin + source_margin(margin))));
-    plans.push_back({std::move(map), margin, least_captured});
-  }
+    found[band] = BandPlan{std::move(map), margin, least_captured};
+  });
+  std::vector<BandPlan> plans;
+  for (std::optional<BandPlan>& plan : found) plans.push_back(*std::move(plan));
   return plans;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/cell_choice.h>
@@ -40,8 +41,10 @@ double contrast_of(const SceneDetail& detail, double cells_per_sample) {
 SamplingErrors::SamplingErrors(const SceneDetail& detail, const FrameTransfer& lens, const Photosite& site,
                                int cells)
     : site_(site), cells_(cells), light_(detail.mean * detail.mean), power_(DetailBands::count) {
+  std::array<std::vector<PassedWaves>, FrameZones::count> by_zone;
+  parallel_for(by_zone.size(), [&](std::size_t zone) { by_zone[zone] = lens.passed(zone, cells); });
   for (std::size_t zone = 0; zone < FrameZones::count; ++zone) {
-    const std::vector<PassedWaves> passed = lens.passed(zone, cells);
+    const std::vector<PassedWaves>& passed = by_zone[zone];
     for (std::size_t band = 0; band < DetailBands::count; ++band) {
       const double power = detail.power[zone][band];
       const double wanted = site.transform(DetailBands::middle_cpp(band), 0).real();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/frame_transfer.h>
 #include <petzval/imaging/light_centre.h>
@@ -9,6 +10,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace petzval {
 
@@ -45,6 +48,20 @@ std::vector<std::complex<float>> otf_of(const std::vector<double>& light, double
   return otf;
 }
 
+/// What a PSF sends down and across; nothing of a dark one. \param step  of its samples [pixels].
+std::optional<std::array<std::vector<std::complex<float>>, 2>> otfs_of(const Psf& psf, double step) {
+  const auto size = static_cast<std::size_t>(psf.size);
+  std::vector<double> of_rows(size), of_columns(size);
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column < size; ++column) {
+      const double light = double(psf.values[row * size + column]);
+      of_columns[column] += light;
+      of_rows[row] += light;
+    }
+  if (!(std::accumulate(of_rows.begin(), of_rows.end(), 0.0) > 0)) return {};
+  return std::array{otf_of(of_rows, step), otf_of(of_columns, step)};
+}
+
 /// In each ring what lies along a line that makes this angle with the radius, and what across.
 std::array<double, FrameZones::count> by_direction(const std::array<double, FrameZones::rings>& shares,
                                                    double square_of_cosine) {
@@ -61,6 +78,7 @@ std::array<double, FrameZones::count> by_direction(const std::array<double, Fram
 FrameTransfer::FrameTransfer(const LensDataTable& table, double wavelength_nm, const SensorGeometry& sensor) {
   const std::size_t wavelength = bracketing_wavelengths(table, wavelength_nm).front().first;
   const FrameZones zones(sensor);
+  std::vector<Share> parts;
   if (table.frame) {
     // Places lie evenly; those beyond the frame by less than a mesh stand for its edge.
     const FramePlaces& frame = *table.frame;
@@ -75,8 +93,9 @@ FrameTransfer::FrameTransfer(const LensDataTable& table, double wavelength_nm, c
       std::array<double, FrameZones::rings> shares{};
       shares[zones.ring_at(std::hypot(x, y))] = 1;
       const double square = x * x + y * y, of_x = square > 0 ? x * x / square : 0.5;
-      add(table.psf[entry], sensor.pitch_um, by_direction(shares, 1 - of_x), by_direction(shares, of_x));
+      parts.push_back({entry, by_direction(shares, 1 - of_x), by_direction(shares, of_x)});
     }
+    add(table, parts, sensor.pitch_um);
     fill_empty_zones();
     return;
   }
@@ -90,24 +109,23 @@ FrameTransfer::FrameTransfer(const LensDataTable& table, double wavelength_nm, c
                                               : (height_mm(i) + height_mm(i + 1)) / 2;
     const std::array<double, FrameZones::rings> shares = zones.shares(from, to);
     if (std::ranges::all_of(shares, [](double share) { return share == 0; })) continue;
-    add(table.psf[entries[i]], sensor.pitch_um, by_direction(shares, 1), by_direction(shares, 0));
+    parts.push_back({entries[i], by_direction(shares, 1), by_direction(shares, 0)});
   }
+  add(table, parts, sensor.pitch_um);
 }
 
-void FrameTransfer::add(const Psf& psf, double pitch_um, const std::array<double, FrameZones::count>& down,
-                        const std::array<double, FrameZones::count>& across) {
-  const auto size = static_cast<std::size_t>(psf.size);
-  std::vector<double> of_rows(size), of_columns(size);
-  for (std::size_t row = 0; row < size; ++row)
-    for (std::size_t column = 0; column < size; ++column) {
-      const double light = double(psf.values[row * size + column]);
-      of_columns[column] += light;
-      of_rows[row] += light;
-    }
-  if (!(std::accumulate(of_rows.begin(), of_rows.end(), 0.0) > 0)) return;
-  const double step = psf.spacing_um / pitch_um;
-  lines_.push_back({otf_of(of_rows, step), down});
-  lines_.push_back({otf_of(of_columns, step), across});
+void FrameTransfer::add(const LensDataTable& table, const std::vector<Share>& shares, double pitch_um) {
+  std::vector<std::optional<std::array<Otf, 2>>> otfs(shares.size());
+  parallel_for(shares.size(), [&](std::size_t i) {
+    const Psf& psf = table.psf[shares[i].entry];
+    otfs[i] = otfs_of(psf, psf.spacing_um / pitch_um);
+  });
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (!otfs[i]) continue;
+    auto& [down, across] = *otfs[i];
+    lines_.push_back({std::move(down), shares[i].down});
+    lines_.push_back({std::move(across), shares[i].across});
+  }
 }
 
 void FrameTransfer::fill_empty_zones() {

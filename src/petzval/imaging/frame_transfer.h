@@ -42,8 +42,12 @@ class FrameTransfer {
     std::array<double, FrameZones::count> weight{};
   };
 
-  void add(const Psf& psf, double pitch_um, const std::array<double, FrameZones::count>& down,
-           const std::array<double, FrameZones::count>& across);
+  /// A PSF, and how much of each zone it stands for with what it sends down and across.
+  struct Share {
+    std::size_t entry;
+    std::array<double, FrameZones::count> down, across;
+  };
+  void add(const LensDataTable& table, const std::vector<Share>& shares, double pitch_um);
 
   /// Those in which no place of a coarse lattice lies: by all places.
   void fill_empty_zones();

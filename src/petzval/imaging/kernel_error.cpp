@@ -134,7 +134,7 @@ struct Places {
   double share = 0;
 };
 Places places_within(const ErrorAtPlaces& errors, double radius) {
-  constexpr int most = 256;  // along a side
+  constexpr int most = 128;  // along a side
   const int columns = errors.columns_in_picture(), rows = errors.rows_in_picture();
   const int across = (columns + most - 1) / most, down = (rows + most - 1) / most;
   Places places;

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 namespace petzval {
 
@@ -26,6 +28,23 @@ void check_wavelengths(std::span<const double> wavelengths_nm) {
                                    wavelength, previous));
     previous = wavelength;
   }
+}
+
+/// The first value that no radiance has: negative, infinite or no number.
+std::span<const float>::iterator first_bad(std::span<const float> values) {
+  constexpr std::size_t block = 1 << 16;
+  constexpr float most = std::numeric_limits<float>::max();
+  const auto is_good = [](float value) { return value >= 0 && value <= most; };
+  std::vector<char> good((values.size() + block - 1) / block);
+  parallel_for(good.size(), [&](std::size_t i) {
+    bool all = true;
+    for (const float value : values.subspan(i * block, std::min(block, values.size() - i * block)))
+      all &= is_good(value);
+    good[i] = all;
+  });
+  const auto bad = static_cast<std::size_t>(std::ranges::find(good, 0) - good.begin());
+  return std::find_if_not(values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), bad * block)),
+                          values.end(), is_good);
 }
 
 void check_angle(double degrees) {
@@ -216,8 +235,7 @@ Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
 void Scene::validate() const {
   for (int index = 0; index < bands(); ++index) {
     const std::span<const float> values = band(index);
-    const auto bad =
-        std::find_if(values.begin(), values.end(), [](float v) { return !(v >= 0 && std::isfinite(v)); });
+    const auto bad = first_bad(values);
     if (bad == values.end()) {
       release_memory();
       continue;
