@@ -20,7 +20,7 @@ namespace {
 /// and those that meet in the middle of a star need all of this.
 constexpr double caution_of_cells = 1.41;
 /// What the blur may take of a tolerance, and cells at least and at most, as the table leaves it to them.
-constexpr double of_blur = 0.5, least_of_cells = 0.5, most_of_cells = 0.75;
+constexpr double of_blur = 0.5, least_of_cells = 0.5, most_of_cells = 0.85;
 
 /// Samples of a scene along a side of a pixel, on the axis.
 double samples_per_pixel(const Scene& scene, const LensDataTable& table, double wavelength_nm,

@@ -20,6 +20,9 @@ namespace {
 
 /// Pixels from a pixel's middle to the last cells that share in it.
 constexpr double pixels_reached = 3;
+/// Cells beyond a pixel's edge, at least: where a cell is a pixel, fewer could not give back what its light
+/// lost.
+constexpr int fewest_cells_reached = 4;
 
 /// Frequencies of a kernel's samples that look like another, in units of the cells' own.
 constexpr std::array<int, 4> aliases{-2, -1, 1, 2};
@@ -149,7 +152,7 @@ void check_photosite(const Photosite& site) {
 int taps_reach(const Photosite& site, int cells, bool exact) {
   if (exact && site.is_plain()) return 0;
   const double apart = std::max(std::abs(site.separation_x), std::abs(site.separation_y)) / 2;
-  return static_cast<int>((pixels_reached - 0.5 + apart) * cells);
+  return std::max(fewest_cells_reached, static_cast<int>((pixels_reached - 0.5 + apart) * cells));
 }
 
 PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path) {
