@@ -34,7 +34,7 @@ struct ImageSeries::Impl {
   /// \param strength  tail_strength(). \param again  what is split is a tail.
   static ImagingOptions of_tails(ImagingOptions options, double strength, bool again) {
     options.photosite = {};
-    options.supersample = 2;
+    options.supersample = 1;  // pixels are narrow beside what lands so far away
     // Far light is smooth, so errors of its kernels do not average out. They are errors of a weak part; of
     // the part itself none may be large, however weak.
     const double smooth = again ? 1 : 0.1;  // tails of tails have it in their tolerance
@@ -47,8 +47,16 @@ struct ImageSeries::Impl {
 
   void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
             ImagingReport& report, const BandShare& share = {}) {
+    // Tails come first.
+    const double before = split ? 0.25 : 0;
+    const auto part = [&](double from, double to) -> ProgressCallback {
+      if (!callback) return {};
+      return [&callback, from, to](double done, const std::string& what) {
+        callback(std::lerp(from, to, done), what);
+      };
+    };
     const std::vector<std::vector<float>> far =
-        split ? far_light(lights, share) : std::vector<std::vector<float>>();
+        split ? far_light(lights, share, part(0, before)) : std::vector<std::vector<float>>();
     std::vector<float> whole;
     std::size_t plane = 0;
     ImagingReport extremes;
@@ -64,14 +72,15 @@ struct ImageSeries::Impl {
           note_extremes(pixels, plane++ == 0, extremes);
           take(pixels);
         },
-        callback, report, share);
+        part(before, 1), report, share);
     report.brightest = extremes.brightest;
     report.darkest = extremes.darkest;
     if (split) report.tail_pixels = picture.options.tail_pixels;
   }
 
   /// On coarse pixels, in the order in which the picture's planes come.
-  std::vector<std::vector<float>> far_light(std::span<const AimedLight> lights, BandShare share) {
+  std::vector<std::vector<float>> far_light(std::span<const AimedLight> lights, BandShare share,
+                                            const ProgressCallback& callback) {
     std::vector<AimedLight> all_rows(lights.begin(), lights.end());
     for (AimedLight& light : all_rows) light.rows = {};
     if (share.known)  // it has all of its light
@@ -80,7 +89,7 @@ struct ImageSeries::Impl {
     ImagingReport unwanted;
     tails->form(
         all_rows, [&](std::span<const float> pixels) { planes.emplace_back(pixels.begin(), pixels.end()); },
-        {}, unwanted, share);
+        callback, unwanted, share);
     return planes;
   }
 
