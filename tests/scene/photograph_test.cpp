@@ -13,6 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
+#include <random>
+#include <vector>
 
 #include "scratch.h"
 
@@ -110,6 +113,27 @@ TEST(Photograph, HasItsColoursByThePrintedMatrix) {
   }
   // The table of D65 has a white 3e-4 away from the rounded one of the matrix; 5 nm against 1 nm is the rest.
   EXPECT_LT(worst, 3e-3);
+}
+
+// Among others, in any order.
+TEST(Photograph, AColourHasOneSpectrumWhereverItStands) {
+  Photograph photograph = all_mixtures(51);
+  const std::size_t colours = photograph.pixels();
+  std::vector<std::size_t> order(colours), of_pixel;
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<float> rgb = photograph.rgb;
+  std::mt19937 random(1843);
+  for (photograph.rows = 1; photograph.rows < 40; ++photograph.rows) {
+    of_pixel.insert(of_pixel.end(), order.begin(), order.end());
+    std::ranges::shuffle(order, random);
+    for (const std::size_t colour : order)
+      photograph.rgb.insert(photograph.rgb.end(), &rgb[3 * colour], &rgb[3 * colour] + 3);
+  }
+  of_pixel.insert(of_pixel.end(), order.begin(), order.end());
+  const Scene scene = photograph_scene(photograph, {});
+  for (int band = 0; band < scene.bands(); ++band)
+    for (std::size_t i = 0; i < of_pixel.size(); ++i)
+      ASSERT_EQ(scene.band(band)[i], scene.band(band)[of_pixel[i]]) << i;
 }
 
 TEST(Photograph, GivesBackNoMoreThanItGets) {

@@ -33,13 +33,12 @@ class ReflectanceColour {
   WithSlope with_slope(double c0, double c1, double c2) const;
 
  private:
-  /// One wavelength: t of SigmoidReflectance, and what it adds to the colour and to luminance.
-  struct Sample {
-    double t;
-    Xyz xyz;
-    double luminous;
-  };
-  std::vector<Sample> samples_;
+  /// Σ of weights times the reflectance.
+  double weighted(const SigmoidReflectance& reflectance, const std::vector<double>& weights) const;
+
+  /// Of each wavelength t of SigmoidReflectance, and what it adds to the colour and to luminance: in arrays
+  /// whose last wavelengths, up to whole vectors, add nothing.
+  std::vector<double> t_, x_, y_, z_, luminous_;
 };
 
 }  // namespace petzval

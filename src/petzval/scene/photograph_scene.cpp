@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/stop.h>
 #include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
@@ -12,20 +13,27 @@
 #include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numeric>
+#include <vector>
 
 namespace petzval {
 
 namespace {
 
-/// A pixel's reflectance, and by how much it outshines a surface.
-struct LiftedPixel {
+/// A colour's reflectance, and by how much it outshines a surface.
+struct LiftedColour {
   SigmoidReflectance reflectance;
   double factor = 1;
+  double luminous = 0;  ///< factor × luminous reflectance
 };
 
-LiftedPixel lifted(const float* rgb, const ReflectanceTable& table) {
+LiftedColour lifted(const std::array<float, 3>& rgb, const ReflectanceTable& table) {
   const LinearRgb colour{rgb[0], rgb[1], rgb[2]};
   const double brightest = std::max({colour.r, colour.g, colour.b});
   if (brightest <= 1) return {table.refined(colour), 1};
@@ -80,17 +88,53 @@ std::vector<double> bands_of_fit(const std::vector<double>& bands_nm) {
   return see_colours ? bands_nm : std::vector<double>{};
 }
 
+/// The colours of some rows. Photographs of 8 bits have few beside their pixels, and a fit takes 2 µs: the
+/// last one of each hash is kept.
+class LiftedColours {
+ public:
+  /// \param pixels  that will be asked for.
+  LiftedColours(const ReflectanceTable& table, const Brightness& brightness, std::size_t pixels)
+      : table_(table),
+        brightness_(brightness),
+        kept_(std::bit_ceil(std::clamp(pixels / pixels_a_place, std::size_t{2}, most_places))) {}
+
+  const LiftedColour& of(const std::array<float, 3>& rgb) {
+    Kept& kept = kept_[place(rgb)];
+    if (kept.rgb == rgb) return kept.colour;
+    kept.rgb = rgb;
+    kept.colour = lifted(rgb, table_);
+    kept.colour.luminous = kept.colour.factor * brightness_(kept.colour.reflectance);
+    return kept.colour;
+  }
+
+ private:
+  static constexpr std::size_t pixels_a_place = 4, most_places = 1 << 18;
+  struct Kept {
+    std::array<float, 3> rgb{NAN, NAN, NAN};  // of no colour
+    LiftedColour colour;
+  };
+  std::size_t place(const std::array<float, 3>& rgb) const {
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;  // 2^64 over the golden ratio (Knuth's hashing)
+    std::uint64_t sum = 0;
+    for (const float value : rgb) sum = (sum ^ std::bit_cast<std::uint32_t>(value)) * odd;
+    return static_cast<std::size_t>(sum >> (65 - std::bit_width(kept_.size())));
+  }
+
+  const ReflectanceTable& table_;
+  const Brightness& brightness_;
+  std::vector<Kept> kept_;
+};
+
 /// Fills a row of all bands with light × reflectance. \returns the sum of its luminous reflectances.
-double lift_row(const Photograph& photograph, int row, const Brightness& brightness,
-                const ReflectanceTable& table, const std::vector<double>& light, Scene& scene) {
+double lift_row(const Photograph& photograph, int row, LiftedColours& colours,
+                const std::vector<double>& light, Scene& scene) {
   const auto columns = static_cast<std::size_t>(photograph.columns);
   const float* const rgb = photograph.row(row).data();
-  std::vector<LiftedPixel> pixels(columns);
+  std::vector<LiftedColour> pixels(columns);
   double luminous = 0;
   for (std::size_t i = 0; i < columns; ++i) {
-    const bool repeated = i > 0 && std::equal(rgb + 3 * i, rgb + 3 * i + 3, rgb + 3 * (i - 1));
-    pixels[i] = repeated ? pixels[i - 1] : lifted(rgb + 3 * i, table);
-    luminous += pixels[i].factor * brightness(pixels[i].reflectance);
+    pixels[i] = colours.of({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+    luminous += pixels[i].luminous;
   }
   for (std::size_t band = 0; band < light.size(); ++band) {
     const double nm = std::clamp(scene.wavelengths_nm()[band], first_told_nm, last_told_nm);
@@ -121,8 +165,15 @@ Scene photograph_scene(const Photograph& photograph, const PhotographOptions& op
   const ReflectanceTable table(colour);
 
   std::vector<double> luminous(static_cast<std::size_t>(photograph.rows));
-  parallel_for(luminous.size(), [&](std::size_t row) {
-    luminous[row] = lift_row(photograph, static_cast<int>(row), brightness, table, light, scene);
+  const std::size_t rows = luminous.size(),
+                    parts = std::min(rows, 4 * static_cast<std::size_t>(thread_count()));
+  parallel_tasks(parts, [&](std::size_t part) {
+    const std::size_t first = part * rows / parts, end = (part + 1) * rows / parts;
+    LiftedColours lifted(table, brightness, (end - first) * static_cast<std::size_t>(photograph.columns));
+    for (std::size_t row = first; row < end; ++row) {
+      check_stop();
+      luminous[row] = lift_row(photograph, static_cast<int>(row), lifted, light, scene);
+    }
   });
   const double mean =
       std::accumulate(luminous.begin(), luminous.end(), 0.0) / static_cast<double>(photograph.pixels());
