@@ -88,7 +88,7 @@ std::vector<double> bands_of_fit(const std::vector<double>& bands_nm) {
   return see_colours ? bands_nm : std::vector<double>{};
 }
 
-/// The colours of some rows. Photographs of 8 bits have few beside their pixels, and a fit takes 2 µs: the
+/// The colours of some rows. Photographs of 8 bits have few beside their pixels, and a fit takes long: the
 /// last one of each hash is kept.
 class LiftedColours {
  public:
