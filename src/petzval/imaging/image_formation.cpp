@@ -47,7 +47,7 @@ struct ImageSeries::Impl {
 
   void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
             ImagingReport& report, const BandShare& share = {}) {
-    // Tails come first.
+    // Tails come first, and are about a quarter of the work.
     const double before = split ? 0.25 : 0;
     const auto part = [&](double from, double to) -> ProgressCallback {
       if (!callback) return {};
